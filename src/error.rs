@@ -1,0 +1,81 @@
+//! The errors of the whole crate: each names the file or key, what is wrong and how to mend it.
+
+use std::path::{Path, PathBuf};
+
+/// `Result` with the crate's [`Error`].
+pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+/// Why a request could not be carried out.
+///
+/// `file` is a path or another name the user knows (`builtin:torch`, `--set`); `field` is the
+/// dotted key, grid name or section inside it and may be empty.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// The operating system refused to read or write.
+    #[error("{}: {source}", path.display())]
+    Io {
+        /// The file in question.
+        path: PathBuf,
+        /// What the system said.
+        #[source]
+        source: std::io::Error,
+    },
+    /// The input breaks its format or a value is out of its range.
+    #[error("{}{reason}", prefix(file, field))]
+    Invalid {
+        /// The file or source of the input.
+        file: String,
+        /// The key, grid or section; may be empty.
+        field: String,
+        /// What is wrong and how to mend it.
+        reason: String,
+    },
+    /// The input is well formed but asks for something that Flambeau does not do.
+    #[error("{}not supported: {reason}", prefix(file, field))]
+    Unsupported {
+        /// The file or source of the input.
+        file: String,
+        /// The key, grid or section; may be empty.
+        field: String,
+        /// What is asked for and what to do instead.
+        reason: String,
+    },
+    /// The caller cancelled the work.
+    #[error("cancelled")]
+    Cancelled,
+}
+
+impl Error {
+    /// An [`Error::Io`] for `path`.
+    pub fn io(path: impl AsRef<Path>, source: std::io::Error) -> Self {
+        Self::Io { path: path.as_ref().to_owned(), source }
+    }
+
+    /// An [`Error::Invalid`].
+    pub fn invalid(
+        file: impl Into<String>,
+        field: impl Into<String>,
+        reason: impl Into<String>,
+    ) -> Self {
+        Self::Invalid { file: file.into(), field: field.into(), reason: reason.into() }
+    }
+
+    /// An [`Error::Unsupported`].
+    pub fn unsupported(
+        file: impl Into<String>,
+        field: impl Into<String>,
+        reason: impl Into<String>,
+    ) -> Self {
+        Self::Unsupported { file: file.into(), field: field.into(), reason: reason.into() }
+    }
+}
+
+fn prefix(file: &str, field: &str) -> String {
+    [file, field].iter().filter(|part| !part.is_empty()).map(|part| format!("{part}: ")).collect()
+}
+
+/// Long work reports a fraction in 0..=1 here and stops with [`Error::Cancelled`] on `false`.
+pub type Progress<'a> = &'a (dyn Fn(f32) -> bool + Sync);
+
+/// A [`Progress`] that ignores the fraction and never cancels.
+pub const NO_PROGRESS: Progress<'static> = &|_| true;

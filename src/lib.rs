@@ -1,0 +1,3 @@
+//! Flambeau: interactive, progressive preview of fire, smoke, fog and cloud.
+
+pub mod error;
