@@ -1,0 +1,212 @@
+//! A thread that reads and builds scenes, so that nothing blocks the window. The latest request
+//! wins: a new one cancels the one at work, and only its outcome is reported.
+
+use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, mpsc};
+
+use crate::error::{Error, Result};
+use crate::scene::{self, Settings, VolumeCache};
+use crate::transport::Scene;
+
+/// What the loader is asked to do.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Job {
+    /// Read a scene or a volume (a path or `builtin:NAME`) and build it.
+    Open(String),
+    /// Build these settings.
+    Build(Settings),
+}
+
+/// What came of a job.
+pub struct Outcome {
+    /// The job.
+    pub job: Job,
+    /// The settings and the scene built from them.
+    pub result: Result<Built>,
+}
+
+/// A built scene and the settings that it was built from.
+#[derive(Clone)]
+pub struct Built {
+    /// What it was built from.
+    pub settings: Settings,
+    /// Ready to sample.
+    pub scene: Arc<Scene>,
+}
+
+/// The handle of the thread. Dropping it cancels and ends the thread.
+pub struct Loader {
+    shared: Arc<Shared>,
+    outcomes: mpsc::Receiver<Outcome>,
+    thread: Option<std::thread::JoinHandle<()>>,
+}
+
+struct Shared {
+    desk: Mutex<Desk>,
+    wake: Condvar,
+    /// Counts the requests; work for an older one is cancelled.
+    latest: AtomicU64,
+    /// Fraction of the present job, as the bits of an f32.
+    progress: AtomicU32,
+}
+
+#[derive(Default)]
+struct Desk {
+    next: Option<(u64, Job)>,
+    busy: bool,
+    closed: bool,
+}
+
+impl Loader {
+    /// Starts the thread. `on_news` is called after each outcome and as work proceeds.
+    pub fn new(on_news: impl Fn() + Send + Sync + 'static) -> Result<Self> {
+        let shared = Arc::new(Shared {
+            desk: Mutex::default(),
+            wake: Condvar::new(),
+            latest: AtomicU64::new(0),
+            progress: AtomicU32::new(0),
+        });
+        let (sender, outcomes) = mpsc::channel();
+        let worker = shared.clone();
+        let thread = std::thread::Builder::new()
+            .name("loader".to_owned())
+            .spawn(move || work(&worker, &sender, &on_news))
+            .map_err(|error| Error::io("the loader thread", error))?;
+        Ok(Self { shared, outcomes, thread: Some(thread) })
+    }
+
+    /// Asks for `job`, cancelling any other.
+    pub fn request(&self, job: Job) {
+        let ticket = self.shared.latest.fetch_add(1, Ordering::Relaxed) + 1;
+        self.shared.desk().next = Some((ticket, job));
+        self.shared.wake.notify_all();
+    }
+
+    /// Cancels what is at work or waiting.
+    pub fn cancel(&self) {
+        self.shared.latest.fetch_add(1, Ordering::Relaxed);
+        self.shared.desk().next = None;
+    }
+
+    /// The next outcome, if there is one.
+    pub fn poll(&self) -> Option<Outcome> {
+        self.outcomes.try_recv().ok()
+    }
+
+    /// The fraction done of the job at work, in 0..=1; `None` while idle.
+    pub fn progress(&self) -> Option<f32> {
+        let desk = self.shared.desk();
+        let busy = desk.busy || desk.next.is_some();
+        busy.then(|| f32::from_bits(self.shared.progress.load(Ordering::Relaxed)))
+    }
+}
+
+impl Drop for Loader {
+    fn drop(&mut self) {
+        self.cancel();
+        self.shared.desk().closed = true;
+        self.shared.wake.notify_all();
+        if let Some(thread) = self.thread.take() {
+            // A panic over there was reported there already.
+            let _ = thread.join();
+        }
+    }
+}
+
+impl Shared {
+    /// The desk, also after a panic of the other side: it is sound after every statement.
+    fn desk(&self) -> MutexGuard<'_, Desk> {
+        self.desk.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Waits for the next job; `None` when the loader is dropped.
+    fn next(&self) -> Option<(u64, Job)> {
+        let mut desk = self.desk();
+        desk.busy = false;
+        loop {
+            if desk.closed {
+                return None;
+            }
+            if let Some(next) = desk.next.take() {
+                desk.busy = true;
+                self.progress.store(0, Ordering::Relaxed);
+                return Some(next);
+            }
+            desk = self.wake.wait(desk).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+}
+
+fn work(shared: &Shared, outcomes: &mpsc::Sender<Outcome>, on_news: &(dyn Fn() + Sync)) {
+    let cache = VolumeCache::default();
+    while let Some((ticket, job)) = shared.next() {
+        let progress = |fraction: f32| {
+            shared.progress.store(fraction.to_bits(), Ordering::Relaxed);
+            on_news();
+            shared.latest.load(Ordering::Relaxed) == ticket
+        };
+        let result = run(&job, &cache, &progress);
+        if shared.latest.load(Ordering::Relaxed) != ticket {
+            on_news();
+            continue;
+        }
+        if outcomes.send(Outcome { job, result }).is_err() {
+            return;
+        }
+        shared.desk().busy = false;
+        on_news();
+    }
+}
+
+fn run(job: &Job, cache: &VolumeCache, progress: crate::error::Progress<'_>) -> Result<Built> {
+    let settings = match job {
+        Job::Open(source) => scene::load(source)?,
+        Job::Build(settings) => settings.clone(),
+    };
+    let scene = Arc::new(scene::build(&settings, cache, progress)?);
+    Ok(Built { settings, scene })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::{Duration, Instant};
+
+    fn wait(loader: &Loader) -> Outcome {
+        let start = Instant::now();
+        loop {
+            if let Some(outcome) = loader.poll() {
+                return outcome;
+            }
+            assert!(start.elapsed() < Duration::from_secs(60), "no outcome");
+            std::thread::sleep(Duration::from_millis(1));
+        }
+    }
+
+    #[test]
+    fn the_latest_request_wins() {
+        let loader = Loader::new(|| ()).unwrap();
+        for seed in 0..50 {
+            let mut settings = Settings::default();
+            settings.film.seed = seed;
+            loader.request(Job::Build(settings));
+        }
+        loop {
+            let outcome = wait(&loader);
+            if outcome.result.unwrap().settings.film.seed == 49 {
+                break;
+            }
+        }
+        assert!(loader.poll().is_none());
+    }
+
+    #[test]
+    fn failures_name_what_was_asked_for() {
+        let loader = Loader::new(|| ()).unwrap();
+        loader.request(Job::Open("no/such/file.vdb".to_owned()));
+        let outcome = wait(&loader);
+        assert_eq!(outcome.job, Job::Open("no/such/file.vdb".to_owned()));
+        assert!(outcome.result.is_err());
+        assert_eq!(loader.progress(), None);
+    }
+}
