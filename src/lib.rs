@@ -1,3 +1,7 @@
 //! Flambeau: interactive, progressive preview of fire, smoke, fog and cloud.
 
 pub mod error;
+pub mod image;
+pub mod math;
+pub mod render;
+pub mod transport;
