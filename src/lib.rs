@@ -1,3 +1,5 @@
 //! Flambeau: interactive, progressive preview of fire, smoke, fog and cloud.
 
 pub mod error;
+pub mod scene;
+pub mod transport;

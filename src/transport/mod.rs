@@ -1,0 +1,3 @@
+//! How light moves through volumes: the strategies and the paths they sample.
+
+pub mod strategy;
