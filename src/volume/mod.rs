@@ -1,0 +1,3 @@
+//! What fills space: sparse voxel grids and the readers of their files.
+
+pub mod grid;
