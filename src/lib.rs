@@ -4,4 +4,7 @@ pub mod error;
 pub mod image;
 pub mod math;
 pub mod render;
+pub mod sampling;
+pub mod scene;
 pub mod transport;
+pub mod volume;
