@@ -198,9 +198,7 @@ impl Schedule {
 
     fn publish_interval(&self, now: f64) -> f64 {
         let (shortest, longest) = PUBLISH_SECONDS;
-        (now * PUBLISH_GROWTH)
-            .clamp(shortest, longest)
-            .max(self.publish_cost * PUBLISH_COST_RATIO)
+        (now * PUBLISH_GROWTH).clamp(shortest, longest).max(self.publish_cost * PUBLISH_COST_RATIO)
     }
 
     /// How long the next piece of work should take: until the next picture or the end.

@@ -282,7 +282,9 @@ impl Worker {
         let has_picture = job.engine.has_picture();
         let stop = || {
             shared.epoch.load(Ordering::Relaxed) != epoch
-                && (has_picture || shared.quit.load(Ordering::Relaxed) || begun.elapsed() > PATIENCE)
+                && (has_picture
+                    || shared.quit.load(Ordering::Relaxed)
+                    || begun.elapsed() > PATIENCE)
         };
         let step = job.engine.step(&self.pool, self.paused, &stop);
         let finished = job.engine.is_finished();
