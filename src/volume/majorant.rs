@@ -220,7 +220,7 @@ mod tests {
                 }
             }
         }
-        assert!(seen > 500);
+        assert!(seen > 500, "{seen}");
     }
 
     #[test]
