@@ -134,6 +134,9 @@ impl Shape {
                 });
                 let face = face.unwrap_or(&faces[5]);
                 let mut point = face.sample(from, u)?;
+                if faces_away(faces, face, from, &point) {
+                    return None;
+                }
                 point.pdf_solid_angle *= face.area() / total;
                 Some(point)
             }
@@ -152,6 +155,13 @@ impl Shape {
             }
         }
     }
+}
+
+/// Whether `point` lies on the far side of a box seen from outside, hidden behind the near side.
+fn faces_away(faces: &[Quad; 6], face: &Quad, from: Vec3A, point: &SurfacePoint) -> bool {
+    let center = 0.5 * (faces[0].center + faces[1].center);
+    let outside = faces.iter().any(|f| (from - f.center).dot(f.center - center) > 0.0);
+    outside && point.direction.dot(face.center - center) > 0.0
 }
 
 /// Density over solid angle of a point drawn with `pdf_area`, seen along `to_point`.
@@ -206,7 +216,7 @@ mod tests {
                 let Some(point) = shape.sample(from, rng.uniform(), u) else { continue };
                 let ray = Ray::new(from, point.direction);
                 let hit = shape.intersect(&ray, f32::INFINITY);
-                let hit = hit.filter(|hit| hit.t > 0.999 * point.distance);
+                let hit = hit.filter(|hit| hit.t > 0.999_99 * point.distance);
                 if let Some(hit) = hit {
                     let pdf = shape.pdf_solid_angle(from, &hit);
                     let ratio = pdf / point.pdf_solid_angle;
