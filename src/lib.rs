@@ -2,9 +2,11 @@
 
 pub mod error;
 pub mod image;
+pub mod light;
 pub mod math;
 pub mod render;
 pub mod sampling;
 pub mod scene;
+pub mod surface;
 pub mod transport;
 pub mod volume;
