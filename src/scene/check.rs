@@ -136,6 +136,7 @@ impl Checker<'_> {
         }
         match bounds.words() {
             Some(words) if !bounds.contain(number) => {
+                let number = number as f32;
                 Err(self.invalid(path, format!("{number} is out of range; the range is {words}")))
             }
             _ => Ok(()),

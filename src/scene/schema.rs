@@ -121,11 +121,13 @@ impl Bounds {
         }
     }
 
-    /// Whether `value` lies within.
+    /// Whether `value` lies within, as precisely as the settings hold it: 0.999 in 32 bits is not
+    /// above a bound of 0.999.
     pub(super) fn contain(&self, value: f64) -> bool {
-        self.min.is_none_or(|min| value >= min)
-            && self.above.is_none_or(|above| value > above)
-            && self.max.is_none_or(|max| value <= max)
+        let single = value as f32;
+        self.min.is_none_or(|min| single >= min as f32)
+            && self.above.is_none_or(|above| single > above as f32)
+            && self.max.is_none_or(|max| single <= max as f32)
             && !(self.nonzero && value == 0.0)
     }
 
