@@ -1,5 +1,8 @@
 //! Flambeau: interactive, progressive preview of fire, smoke, fog and cloud.
 
 pub mod error;
+pub mod math;
+pub mod sampling;
 pub mod scene;
 pub mod transport;
+pub mod volume;

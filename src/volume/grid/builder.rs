@@ -1,0 +1,278 @@
+//! Building a grid from leaves and tiles.
+
+use std::collections::HashMap;
+
+use glam::{IVec3, UVec3};
+use rayon::prelude::*;
+
+use super::assemble::assemble;
+use super::index::{NODE_BRICKS, brick_in_node, node_of};
+use super::stats::Summary;
+use super::{IndexBox, SparseGrid, Voxel};
+use crate::error::{Error, NO_PROGRESS, Progress, Result};
+
+/// Voxels along the edge of a leaf.
+const LEAF_EDGE: i32 = 8;
+/// Nodes that a grid's tiles may touch, 128 voxels a side each: 128 tiles of 4096 voxels a side.
+/// A node costs a few hundred bytes while the grid is built, so this keeps tiles near 1 GiB.
+const MAX_TILE_NODES: u64 = 1 << 22;
+
+/// 8x8x8 voxels.
+#[derive(Clone)]
+pub struct Leaf<V> {
+    /// The first voxel, a multiple of 8.
+    pub origin: IVec3,
+    /// The values, z fastest.
+    pub values: [V; 512],
+    /// One bit a voxel in the same order, lowest bit first.
+    pub active: [u64; 8],
+}
+
+impl<V> Leaf<V> {
+    /// The position of the voxel whose value is stored at `offset`.
+    pub(super) fn voxel(&self, offset: usize) -> IVec3 {
+        self.origin
+            + IVec3::new((offset >> 6) as i32, (offset >> 3 & 7) as i32, (offset & 7) as i32)
+    }
+}
+
+/// Where a block of 8 voxels a side gets its values: a leaf or, with the top bit clear, a constant.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) struct Origin(u32);
+
+impl Origin {
+    const LEAF: u32 = 1 << 31;
+    /// The constant that is the background.
+    pub const BACKGROUND: Self = Self(0);
+
+    /// The number of the leaf, if it is one.
+    pub fn leaf(self) -> Option<usize> {
+        (self.0 & Self::LEAF != 0).then_some((self.0 & !Self::LEAF) as usize)
+    }
+
+    /// The number of the constant; only for what is not a leaf.
+    pub fn constant(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// What a node's region of 128 voxels a side holds.
+#[derive(Clone)]
+pub(super) enum Region {
+    Constant(Origin),
+    Blocks(Box<[Origin; NODE_BRICKS]>),
+}
+
+/// Everything that the grid is assembled from.
+pub(super) struct Parts<V> {
+    /// Values of the constants; the first is the background.
+    pub constants: Vec<V>,
+    pub leaves: Vec<Leaf<V>>,
+    pub regions: HashMap<IVec3, Region>,
+    pub summary: Summary<V>,
+}
+
+/// Gathers the leaves and tiles of a grid, which are not meant to overlap; leaves win over tiles.
+pub struct GridBuilder<V> {
+    leaves: Vec<Leaf<V>>,
+    constants: Vec<V>,
+    constant_ids: HashMap<[u32; 3], Origin>,
+    regions: HashMap<IVec3, Region>,
+    summary: Summary<V>,
+}
+
+impl<V: Voxel> GridBuilder<V> {
+    /// An empty grid. A background that is not finite is replaced by zero, and counted.
+    pub fn new(background: V) -> Self {
+        let mut summary = Summary::empty();
+        let usable = background.is_usable();
+        if !usable {
+            summary.count_replaced();
+        }
+        let background = if usable { background } else { V::ZERO };
+        Self {
+            leaves: Vec::new(),
+            constants: vec![background],
+            constant_ids: HashMap::from([(background.bits(), Origin::BACKGROUND)]),
+            regions: HashMap::new(),
+            summary,
+        }
+    }
+
+    /// The value outside everything added.
+    pub fn background(&self) -> V {
+        self.constants[0]
+    }
+
+    /// Adds leaves; their origins must be multiples of 8.
+    pub fn add_leaves(&mut self, leaves: impl IntoIterator<Item = Leaf<V>>) {
+        self.leaves.extend(leaves);
+    }
+
+    /// Adds a box of equal voxels with its first voxel at `origin` and `edge` voxels a side.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] unless both are multiples of 8, or if the box reaches past the largest
+    /// coordinate; [`Error::Unsupported`] if the tiles would take absurd memory.
+    pub fn add_tile(&mut self, origin: IVec3, edge: u32, value: V, active: bool) -> Result<()> {
+        let last = origin.as_i64vec3() + (i64::from(edge) - 1);
+        if edge == 0 || last.max_element() > i64::from(i32::MAX) {
+            return Err(Error::invalid("", "", "a tile that reaches past the largest coordinate"));
+        }
+        let bounds = IndexBox { min: origin, max: last.as_ivec3() };
+        if edge % LEAF_EDGE as u32 != 0 || (origin & (LEAF_EDGE - 1)) != IVec3::ZERO {
+            return Err(Error::invalid("", "", "a tile that is not aligned to 8 voxels"));
+        }
+        let background = self.background();
+        self.summary.merge(&Summary::of_tile(bounds, value, active, background));
+        let value = if value.is_usable() { value } else { background };
+        if value == background {
+            return Ok(());
+        }
+        let nodes = IndexBox { min: node_of(bounds.min), max: node_of(bounds.max) };
+        let total = nodes.voxel_count().saturating_add(self.regions.len() as u64);
+        if total > MAX_TILE_NODES {
+            return Err(Error::unsupported(
+                "",
+                "",
+                format!(
+                    "tiles over {total} blocks of 128x128x128 voxels, at most {MAX_TILE_NODES} fit \
+                     in memory; resample the grid more coarsely or prune its tiles"
+                ),
+            ));
+        }
+        let constant = self.constant(value);
+        nodes.positions().for_each(|node| self.fill_region(node, &bounds, constant));
+        Ok(())
+    }
+
+    /// Builds the grid.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`] when `progress` says so.
+    pub fn finish(mut self, progress: Progress) -> Result<SparseGrid<V>> {
+        let background = self.background();
+        let summaries: Vec<_> = self
+            .leaves
+            .par_iter_mut()
+            .map(|leaf| {
+                let summary = Summary::of_leaf(leaf, background);
+                (summary, leaf.values.iter().all(|value| *value == leaf.values[0]))
+            })
+            .collect();
+        if !progress(0.2) {
+            return Err(Error::Cancelled);
+        }
+        for (number, (summary, is_constant)) in summaries.iter().enumerate() {
+            self.summary.merge(summary);
+            let Leaf { origin, values, .. } = &self.leaves[number];
+            let (origin, value) = (*origin, values[0]);
+            let from = match is_constant {
+                true => self.constant(value),
+                false => Origin(Origin::LEAF | number as u32),
+            };
+            self.set_block(origin, from);
+        }
+        let Self { leaves, constants, regions, summary, .. } = self;
+        assemble(Parts { constants, leaves, regions, summary }, progress)
+    }
+
+    /// The number of a constant, the same for the same value.
+    fn constant(&mut self, value: V) -> Origin {
+        if value == self.constants[0] {
+            return Origin::BACKGROUND;
+        }
+        *self.constant_ids.entry(value.bits()).or_insert_with(|| {
+            self.constants.push(value);
+            Origin(self.constants.len() as u32 - 1)
+        })
+    }
+
+    /// Sets the part of a node's region that lies in `bounds`.
+    fn fill_region(&mut self, node: IVec3, bounds: &IndexBox, constant: Origin) {
+        let whole = super::index::node_box(node);
+        if bounds.contains(&whole) {
+            self.regions.insert(node, Region::Constant(constant));
+            return;
+        }
+        let part = bounds.intersection(&whole);
+        let blocks = IndexBox { min: part.min >> 3, max: part.max >> 3 };
+        for block in blocks.positions() {
+            self.set_block(block * LEAF_EDGE, constant);
+        }
+    }
+
+    /// Sets the block of 8 voxels a side that starts at `voxel`.
+    fn set_block(&mut self, voxel: IVec3, from: Origin) {
+        let node = node_of(voxel);
+        let region = match self.regions.get_mut(&node) {
+            Some(region) => region,
+            None if from == Origin::BACKGROUND => return,
+            None => self.regions.entry(node).or_insert(Region::Constant(Origin::BACKGROUND)),
+        };
+        if let Region::Constant(constant) = *region {
+            if constant == from {
+                return;
+            }
+            *region = Region::Blocks(Box::new([constant; NODE_BRICKS]));
+        }
+        if let Region::Blocks(blocks) = region {
+            blocks[brick_in_node(voxel)] = from;
+        }
+    }
+}
+
+impl<V: Voxel> SparseGrid<V> {
+    /// A grid from a dense box of active voxels that starts at `origin`; `values` has z fastest,
+    /// then y, then x.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] unless there are `dims.x * dims.y * dims.z` values within the range of
+    /// coordinates.
+    pub fn from_dense(origin: IVec3, dims: UVec3, values: &[V], background: V) -> Result<Self> {
+        let count = dims.as_u64vec3().to_array().into_iter().try_fold(1, u64::checked_mul);
+        if count != Some(values.len() as u64) {
+            let reason = format!("{dims} voxels were announced and {} values given", values.len());
+            return Err(Error::invalid("", "", reason));
+        }
+        let mut builder = GridBuilder::new(background);
+        if values.is_empty() {
+            return builder.finish(NO_PROGRESS);
+        }
+        let last = origin.as_i64vec3() + dims.as_i64vec3() - 1;
+        if last.max_element() > i64::from(i32::MAX) {
+            return Err(Error::invalid("", "", "the box reaches past the largest coordinate"));
+        }
+        let bounds = IndexBox { min: origin, max: last.as_ivec3() };
+        let leaves = IndexBox { min: bounds.min >> 3, max: bounds.max >> 3 };
+        builder.add_leaves(leaves.positions().map(|leaf| {
+            let values = DenseBox { bounds, dims, values, background };
+            values.leaf(leaf * LEAF_EDGE)
+        }));
+        builder.finish(NO_PROGRESS)
+    }
+}
+
+/// A dense array and where it lies.
+struct DenseBox<'a, V> {
+    bounds: IndexBox,
+    dims: UVec3,
+    values: &'a [V],
+    background: V,
+}
+
+impl<V: Voxel> DenseBox<'_, V> {
+    fn leaf(&self, origin: IVec3) -> Leaf<V> {
+        let mut leaf = Leaf { origin, values: [self.background; 512], active: [0; 8] };
+        for offset in 0..leaf.values.len() {
+            let voxel = leaf.voxel(offset);
+            if self.bounds.contains(&IndexBox::of_voxel(voxel)) {
+                let [x, y, z] = (voxel - self.bounds.min).to_array().map(|c| c as usize);
+                let at = (x * self.dims.y as usize + y) * self.dims.z as usize + z;
+                leaf.values[offset] = self.values[at];
+                leaf.active[offset >> 6] |= 1 << (offset & 63);
+            }
+        }
+        leaf
+    }
+}
