@@ -44,6 +44,15 @@ pub(super) fn table(schema: &Value) -> Option<&Value> {
     alternatives(schema).into_iter().find(|one| properties(one).is_some())
 }
 
+/// The schema of what an optional key holds when it is there.
+fn present(schema: &Value) -> Option<&Value> {
+    let list = schema.get("anyOf")?.as_array()?;
+    match list.as_slice() {
+        [inner, null] if type_name(null) == "null" => Some(inner),
+        _ => None,
+    }
+}
+
 /// The type of one alternative: `number`, `integer`, `string`, `boolean`, `array` or `object`.
 pub(super) fn type_name(schema: &Value) -> &str {
     let kind = schema.get("type");
@@ -67,6 +76,9 @@ pub(super) fn choices(schema: &Value) -> Vec<&str> {
 pub(super) fn label(schema: &Value) -> String {
     if let Some(label) = schema.get("label").and_then(Value::as_str) {
         return label.to_owned();
+    }
+    if let Some(inner) = present(schema) {
+        return label(inner);
     }
     let names = choices(schema);
     if !names.is_empty() {
@@ -100,15 +112,16 @@ pub(super) struct Bounds {
 }
 
 impl Bounds {
-    /// The bounds that the schema states for itself.
+    /// The bounds that the schema states for itself and for what it holds when it is there.
     pub(super) fn of(schema: &Value) -> Self {
         let number = |key: &str| schema.get(key).and_then(Value::as_f64);
-        Self {
+        let own = Self {
             min: number("minimum"),
             above: number("exclusiveMinimum"),
             max: number("maximum"),
             nonzero: schema.get("nonzero").is_some(),
-        }
+        };
+        present(schema).map_or(own, |inner| own.or(Self::of(inner)))
     }
 
     /// These bounds, and for what they leave open those of the `inner` schema.

@@ -85,9 +85,8 @@ fn relative_planck(wavelength: f64, kelvin: f64) -> f64 {
     /// h c / k in m K.
     const SECOND_RADIATION: f64 = 1.438_776_877e-2;
     const WIEN: f64 = 2.897_771_955e-3;
-    let radiance = |lambda: f64| {
-        1.0 / (lambda.powi(5) * ((SECOND_RADIATION / (lambda * kelvin)).exp() - 1.0))
-    };
+    let radiance =
+        |lambda: f64| 1.0 / (lambda.powi(5) * ((SECOND_RADIATION / (lambda * kelvin)).exp() - 1.0));
     radiance(wavelength) / radiance(WIEN / kelvin)
 }
 

@@ -79,7 +79,8 @@ impl Noise {
     pub fn range(&self, region: &Aabb) -> (f32, f32) {
         let bound = |upper: bool| {
             let sum = self.octave_sum(|noise, octave, scale| {
-                let (min, max) = noise.lattice_range(octave, scale * region.min, scale * region.max);
+                let (min, max) =
+                    noise.lattice_range(octave, scale * region.min, scale * region.max);
                 if upper { max } else { min }
             });
             self.shaped(sum)

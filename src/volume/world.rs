@@ -35,7 +35,8 @@ impl Instance {
         let chord = (volume.chords() * lengths).max_element();
         // A grid may emit only between the probing chords; any positive unit keeps it sampled.
         let diagonal = volume.region().bounds().diagonal();
-        let emission_rate = if chord > 0.0 { 1.0 / chord } else { fallback_rate(&volume, diagonal) };
+        let emission_rate =
+            if chord > 0.0 { 1.0 / chord } else { fallback_rate(&volume, diagonal) };
         let voxel_rate = volume.voxel().map_or(0.0, |v| 1.0 / (v * lengths.min_element()));
         let bounds = match volume.region() {
             Region::Everywhere => Aabb::centered(Vec3A::INFINITY),
