@@ -200,7 +200,7 @@ mod tests {
             scale * (Vec3A::new(rng.uniform(), rng.uniform(), rng.uniform()) - Vec3A::splat(0.5))
         };
         let mut seen = 0;
-        for i in 0..500 {
+        for i in 0..1000 {
             let mut direction = point(2.0);
             if i % 5 == 0 {
                 direction.x = 0.0;

@@ -105,28 +105,38 @@ impl Noise {
 
     fn lattice_noise(&self, octave: u32, p: Vec3A) -> f32 {
         let floor = p.floor();
-        let cell = floor.as_ivec3();
-        let f = p - floor;
+        self.cell_noise(octave, floor.as_ivec3(), p - floor)
+    }
+
+    /// The noise at offset `f` in [0, 1]³ from the low corner of a lattice cell.
+    fn cell_noise(&self, octave: u32, cell: IVec3, f: Vec3A) -> f32 {
         let s = f * f * (Vec3A::splat(3.0) - 2.0 * f);
         let corner = |x, y, z| self.lattice_value(octave, cell + IVec3::new(x, y, z));
         let along_x = |y, z| lerp(corner(0, y, z), corner(1, y, z), s.x);
         lerp(lerp(along_x(0, 0), along_x(1, 0), s.y), lerp(along_x(0, 1), along_x(1, 1), s.y), s.z)
     }
 
-    /// A box wider than a few lattice cells meets nearly every value; looking would cost much and
-    /// tell little.
+    /// Within a lattice cell the noise is affine in the eased coordinate of each axis, so that its
+    /// extremes over a box lie at the box's corners. A box wider than a few cells meets nearly
+    /// every value; looking would cost much and tell little.
     fn lattice_range(&self, octave: u32, min: Vec3A, max: Vec3A) -> (f32, f32) {
-        const WIDEST: i32 = 4;
-        let (low, high) = (min.floor().as_ivec3(), max.floor().as_ivec3() + IVec3::ONE);
-        if (high.saturating_sub(low)).max_element() > WIDEST {
+        const WIDEST: i32 = 3;
+        let (low, high) = (min.floor().as_ivec3(), max.floor().as_ivec3());
+        if high.saturating_sub(low).max_element() > WIDEST {
             return (0.0, 1.0);
         }
         let mut range = (1.0_f32, 0.0_f32);
         for z in low.z..=high.z {
             for y in low.y..=high.y {
                 for x in low.x..=high.x {
-                    let value = self.lattice_value(octave, IVec3::new(x, y, z));
-                    range = (range.0.min(value), range.1.max(value));
+                    let cell = IVec3::new(x, y, z);
+                    let corner = cell.as_vec3a();
+                    let inside =
+                        Aabb::new(min.max(corner) - corner, max.min(corner + 1.0) - corner);
+                    for offset in inside.corners() {
+                        let value = self.cell_noise(octave, cell, offset);
+                        range = (range.0.min(value), range.1.max(value));
+                    }
                 }
             }
         }
