@@ -4,7 +4,7 @@ use glam::Vec3A;
 
 use super::{
     blackbody,
-    field::{GridField, RgbField},
+    field::{RgbField, ScalarField},
 };
 use crate::math::{Aabb, Rgb, luminance};
 
@@ -27,15 +27,15 @@ pub enum Emission {
     },
     /// Color by temperature.
     Blackbody(Blackbody),
-    /// Color by a ramp over a grid's value.
+    /// Color by a ramp over a field's value.
     Ramp(ColorRamp),
 }
 
-/// Black-body emission driven by a temperature grid.
+/// Black-body emission driven by a temperature.
 #[derive(Clone, Debug)]
 pub struct Blackbody {
-    /// The grid that stands for temperature.
-    pub grid: GridField<f32>,
+    /// What stands for temperature.
+    pub grid: ScalarField,
     /// kelvin = (value − offset) · scale.
     pub kelvin_offset: f32,
     /// See `kelvin_offset`.
@@ -48,11 +48,11 @@ pub struct Blackbody {
     pub t4_reference: Option<f32>,
 }
 
-/// Emission by a piecewise linear color ramp over a grid's value, constant beyond its ends.
+/// Emission by a piecewise linear color ramp over a field's value, constant beyond its ends.
 #[derive(Clone, Debug)]
 pub struct ColorRamp {
-    /// The grid that drives it.
-    pub grid: GridField<f32>,
+    /// What drives it.
+    pub grid: ScalarField,
     /// Stops in ascending order of value; at least one.
     pub stops: Vec<(f32, Rgb)>,
     /// Multiplier, radiance per length.
