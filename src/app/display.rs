@@ -9,23 +9,8 @@ use glam::{UVec2, Vec2};
 
 use super::theme::color;
 use super::zoom::Placement;
-use crate::image::tone::ToneCurve;
+use crate::image::tone::{Tone, ToneCurve};
 use crate::render::Picture;
-
-/// How linear values become what the screen shows.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DisplaySettings {
-    /// Stops of exposure: the picture is multiplied by 2 to this power.
-    pub exposure: f32,
-    /// The curve from exposed linear values to display-linear ones.
-    pub curve: ToneCurve,
-}
-
-impl Default for DisplaySettings {
-    fn default() -> Self {
-        Self { exposure: 0.0, curve: ToneCurve::default() }
-    }
-}
 
 /// `View` of the shader.
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -75,9 +60,9 @@ pub fn paint(
     corner: Vec2,
     picture: Arc<Picture>,
     placement: Placement,
-    settings: DisplaySettings,
+    tone: Tone,
 ) {
-    let callback = PaintPicture { picture, corner: corner + placement.corner, placement, settings };
+    let callback = PaintPicture { picture, corner: corner + placement.corner, placement, tone };
     painter.add(egui_wgpu::Callback::new_paint_callback(rect, callback));
 }
 
@@ -86,7 +71,7 @@ struct PaintPicture {
     /// The picture's upper left corner in the framebuffer.
     corner: Vec2,
     placement: Placement,
-    settings: DisplaySettings,
+    tone: Tone,
 }
 
 impl CallbackTrait for PaintPicture {
@@ -126,9 +111,9 @@ impl PaintPicture {
         View {
             origin: (-self.corner / self.placement.scale).into(),
             step: 1.0 / self.placement.scale,
-            exposure: self.settings.exposure.exp2(),
+            exposure: self.tone.exposure.exp2(),
             size: self.picture.size.into(),
-            curve: match self.settings.curve {
+            curve: match self.tone.curve {
                 ToneCurve::Linear => 0,
                 ToneCurve::Filmic => 1,
             },

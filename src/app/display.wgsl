@@ -47,7 +47,11 @@ fn footprint(center: vec2f) -> vec3f {
 
 // The tone curve, from exposed linear values to display-linear ones.
 fn tone(color: vec3f) -> vec3f {
-    return color;
+    if view.curve == 0u {
+        return color;
+    }
+    let x = clamp(color, vec3f(0.0), vec3f(1.0e4));
+    return x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14);
 }
 
 fn srgb(linear: vec3f) -> vec3f {

@@ -1,5 +1,5 @@
 //! Keeps the picture up to date with the document: decides what is stale, builds and starts it,
-//! and paces that so that every edit of a fast drag may still show its first picture.
+//! and lets every edit of a fast drag come to its first picture.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -11,9 +11,10 @@ use super::state::Document;
 use crate::error::{Error, Result};
 use crate::render::{Picture, Request, Session};
 use crate::scene::Settings;
+use crate::scene::settings::FilmSettings;
 use crate::transport::{Frame, Scene};
 
-/// A build or a first picture that takes longer than this gives way to the next edit.
+/// A build that takes longer than this gives way to the next edit.
 const PATIENCE: Duration = Duration::from_millis(250);
 
 /// What happened since the last frame.
@@ -37,6 +38,8 @@ pub struct Engine {
     refused: Option<Settings>,
     started: Option<Started>,
     generation: u64,
+    /// The latest generation whose failure was told.
+    failed: u64,
     paused: bool,
     picture: Option<Arc<Picture>>,
 }
@@ -44,9 +47,9 @@ pub struct Engine {
 /// The render under way.
 struct Started {
     scene: Arc<Scene>,
+    settings: Settings,
     film: FilmKey,
     generation: u64,
-    at: Instant,
 }
 
 /// What of the film makes another render.
@@ -73,6 +76,7 @@ impl Engine {
             refused: None,
             started: None,
             generation: 0,
+            failed: 0,
             paused: false,
             picture: None,
         })
@@ -120,6 +124,11 @@ impl Engine {
         &self.session
     }
 
+    /// What the film of the session shows: the settings that it was built from, with its own size.
+    pub fn rendered(&self) -> Option<&Settings> {
+        self.started.as_ref().map(|started| &started.settings)
+    }
+
     /// Whether sampling is paused.
     pub fn paused(&self) -> bool {
         self.paused
@@ -135,6 +144,7 @@ impl Engine {
     pub fn restart(&mut self) {
         self.started = None;
         self.refused = None;
+        self.set_paused(false);
     }
 
     /// Whether the picture shown is one of the latest render.
@@ -170,6 +180,12 @@ impl Engine {
             }
         }
         self.picture = self.session.latest();
+        if let Some((generation, failure)) = self.session.last_failure()
+            && self.failed < generation
+        {
+            self.failed = generation;
+            news.push(News::Failed(failure.to_string()));
+        }
         news
     }
 
@@ -183,20 +199,19 @@ impl Engine {
     ) -> Option<Duration> {
         let film = &document.settings.film;
         let film = FilmKey { size, seed: film.seed, spp: film.spp };
-        let wait_for_start = self.start(film, news);
-        let wait_for_build = self.build(&document.settings, wait_for_start.is_some());
-        wait_for_start.or(wait_for_build)
+        self.start(film, news);
+        self.build(&document.settings)
     }
 
-    fn start(&mut self, film: FilmKey, news: &mut Vec<News>) -> Option<Duration> {
-        let built = self.built.as_ref()?;
-        if let Some(started) = &self.started {
-            if Arc::ptr_eq(&started.scene, &built.scene) && started.film == film {
-                return None;
-            }
-            if !self.is_current() && started.at.elapsed() < PATIENCE {
-                return Some(PATIENCE - started.at.elapsed());
-            }
+    /// Starts the scene that was built last, unless it runs already. The session itself sees to it
+    /// that each start of a fast series may show its first picture.
+    fn start(&mut self, film: FilmKey, news: &mut Vec<News>) {
+        let Some(built) = &self.built else { return };
+        let running = |started: &Started| {
+            Arc::ptr_eq(&started.scene, &built.scene) && started.film == film
+        };
+        if self.started.as_ref().is_some_and(running) {
+            return;
         }
         self.generation += 1;
         let scene = built.scene.clone();
@@ -208,19 +223,18 @@ impl Engine {
             generation: self.generation,
             resume: None,
         });
-        self.set_paused(false);
-        let generation = self.generation;
-        self.started = Some(Started { scene, film, generation, at: Instant::now() });
-        news.push(News::Started(generation));
-        None
+        let mut settings = built.settings.clone();
+        settings.film = FilmSettings { size: film.size.into(), seed: film.seed, spp: film.spp };
+        self.started = Some(Started { scene, settings, film, generation: self.generation });
+        news.push(News::Started(self.generation));
     }
 
     /// Asks for a build where the settings differ from what was built last.
-    fn build(&mut self, settings: &Settings, busy: bool) -> Option<Duration> {
+    fn build(&mut self, settings: &Settings) -> Option<Duration> {
         let fresh = |other: &Settings| same_scene(other, settings);
         let built = self.built.as_ref()?;
         let done = fresh(&built.settings) || self.refused.as_ref().is_some_and(fresh);
-        if done || self.opening.is_some() || busy {
+        if done || self.opening.is_some() {
             return None;
         }
         if let Some((asked, since)) = &self.building

@@ -30,7 +30,6 @@ mod window;
 mod zoom;
 
 pub use commands::Command;
-pub use display::DisplaySettings;
 pub use engine::Engine;
 pub use files::Dialogs;
 pub use notices::{Level, Notice, Notices};

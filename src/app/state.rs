@@ -2,8 +2,8 @@
 
 use std::time::{Duration, Instant};
 
-use super::display::DisplaySettings;
 use super::history::{Gesture, History};
+use crate::image::tone::Tone;
 use crate::scene::Settings;
 
 /// Everything that an edit changes and undo brings back.
@@ -12,7 +12,7 @@ pub struct Document {
     /// The scene, as a scene file holds it.
     pub settings: Settings,
     /// How the picture is shown.
-    pub display: DisplaySettings,
+    pub tone: Tone,
     /// Whether the film keeps `settings.film.size` instead of the viewport's own size.
     pub keep_size: bool,
 }
@@ -36,8 +36,8 @@ const WHEEL_PAUSE: Duration = Duration::from_millis(600);
 impl Editor {
     /// Starts over with `settings`, keeping how the picture is shown.
     pub fn open(&mut self, settings: Settings) {
-        let display = self.document.display;
-        self.document = Document { settings, display, keep_size: false };
+        let tone = self.document.tone;
+        self.document = Document { settings, tone, keep_size: false };
         self.opened = self.document.clone();
         self.before = self.document.clone();
         self.history = History::default();
@@ -121,18 +121,18 @@ mod tests {
         let ctx = egui::Context::default();
         let mut editor = Editor::default();
         editor.begin_frame(&ctx);
-        editor.document.display.exposure = 2.0;
+        editor.document.tone.exposure = 2.0;
         editor.name_edit("exposure");
         assert!(editor.end_frame());
         editor.begin_frame(&ctx);
         assert!(!editor.end_frame());
         assert_eq!(editor.undo_name(), Some("exposure"));
         editor.undo();
-        assert_eq!(editor.document.display.exposure, 0.0);
+        assert_eq!(editor.document.tone.exposure, 0.0);
         assert_eq!(editor.undo_name(), None);
         editor.redo();
-        assert_eq!(editor.document.display.exposure, 2.0);
+        assert_eq!(editor.document.tone.exposure, 2.0);
         editor.redo();
-        assert_eq!(editor.document.display.exposure, 2.0);
+        assert_eq!(editor.document.tone.exposure, 2.0);
     }
 }

@@ -102,8 +102,8 @@ impl Viewport {
         let Some(picture) = picture else { return };
         let placement = self.zoom.place(picture.size, self.size);
         let corner = from_egui(rect.min.to_vec2()) * factor;
-        let display = editor.document.display;
-        display::paint(ui.painter(), rect, corner, picture.clone(), placement, display);
+        let tone = editor.document.tone;
+        display::paint(ui.painter(), rect, corner, picture.clone(), placement, tone);
         self.probe = self.pointer.and_then(|at| probe(picture, placement, at));
         if let Some(probe) = self.probe
             && placement.scale >= OUTLINE_FROM

@@ -14,12 +14,13 @@ use super::frame_stats::FrameStats;
 use super::notices::{Level, Notices};
 use super::panels::bars::{self, PathBar, Typed};
 use super::panels::{self, Panel};
-use super::saver::Saver;
+use super::saver::{Content, Saver};
 use super::state::Editor;
 use super::theme::{self, color, space};
 use super::viewport::{Viewport, pose, set_pose};
 use crate::error::Result;
 use crate::image::tone::ToneCurve;
+use crate::scene::DEFAULT_SCENE;
 
 /// How the window is set up.
 #[derive(Clone, Debug, Default)]
@@ -31,9 +32,6 @@ pub struct Options {
     /// How paths are asked for.
     pub dialogs: Dialogs,
 }
-
-/// The scene that opens when none is asked for.
-const DEFAULT_SCENE: &str = "builtin:torch";
 
 /// Everything behind the window. It needs a render state but no window, so tests can drive it.
 pub struct App {
@@ -287,13 +285,37 @@ impl App {
             self.open(&path.to_string_lossy());
             return;
         }
-        let (path, document) = (purpose.complete(path), self.editor.document.clone());
+        let Some(content) = self.content(purpose) else {
+            self.notices.failed("There is no picture to save yet.");
+            return;
+        };
         let wake = ctx.clone();
-        let started = self.saver.start(purpose, path, document, self.engine.session(), move || {
-            wake.request_repaint();
-        });
-        if let Err(error) = started {
+        let path = purpose.complete(path);
+        if let Err(error) = self.saver.start(path, content, move || wake.request_repaint()) {
             self.notices.failed(error.to_string());
+        }
+    }
+
+    /// What saving writes at this moment; `None` where there is nothing yet.
+    fn content(&self, purpose: Purpose) -> Option<Content> {
+        let document = &self.editor.document;
+        let settings = self.engine.rendered()?;
+        match purpose {
+            Purpose::Open => None,
+            Purpose::SaveExr => Some(Content::Exr {
+                film: self.engine.session().snapshot(),
+                settings: settings.clone(),
+                seconds: self.engine.picture().map_or(0.0, |picture| picture.stats.seconds),
+            }),
+            Purpose::SavePng => {
+                Some(Content::Png { film: self.engine.session().snapshot(), tone: document.tone })
+            }
+            Purpose::SaveScene => {
+                // A film of the window's size is written as that size, so the picture is the same.
+                let mut saved = document.settings.clone();
+                saved.film.size = settings.film.size;
+                Some(Content::Scene(saved))
+            }
         }
     }
 
@@ -356,15 +378,15 @@ impl App {
         let document = &mut self.editor.document;
         let name = match command {
             Command::ExposureUp => {
-                document.display.exposure += 0.5;
+                document.tone.exposure += 0.5;
                 "exposure"
             }
             Command::ExposureDown => {
-                document.display.exposure -= 0.5;
+                document.tone.exposure -= 0.5;
                 "exposure"
             }
             Command::NextToneCurve => {
-                document.display.curve = match document.display.curve {
+                document.tone.curve = match document.tone.curve {
                     ToneCurve::Linear => ToneCurve::Filmic,
                     ToneCurve::Filmic => ToneCurve::Linear,
                 };
@@ -384,7 +406,10 @@ impl App {
     /// Moves the camera so that everything finite that fills space is in the picture.
     fn frame_volume(&mut self) {
         let Some(built) = self.engine.built() else { return };
-        let (low, high) = (Vec3::from(built.scene.low), Vec3::from(built.scene.high));
+        let bounds = built.scene.world.instances().iter().map(|instance| *instance.bounds());
+        let bounds = bounds.filter(|bounds| bounds.size().is_finite());
+        let Some(bounds) = bounds.reduce(|all, bounds| all.union(&bounds)) else { return };
+        let (low, high) = (Vec3::from(bounds.min), Vec3::from(bounds.max));
         let size = self.viewport.film_size().unwrap_or(UVec2::ONE).as_vec2();
         let camera = &mut self.editor.document.settings.camera;
         let framed = pose(camera).frame_box(low, high, camera.fov_x, size.x / size.y);

@@ -129,8 +129,8 @@ fn channel(value: f32) -> String {
 /// Exposure and tone curve, from right to left.
 fn display(ui: &mut Ui, panel: &mut Panel<'_>) {
     let mut edit = None;
-    let display = &mut panel.editor.document.display;
-    let (name, next) = match display.curve {
+    let tone = &mut panel.editor.document.tone;
+    let (name, next) = match tone.curve {
         ToneCurve::Linear => ("Linear", ToneCurve::Filmic),
         ToneCurve::Filmic => ("Filmic", ToneCurve::Linear),
     };
@@ -138,10 +138,10 @@ fn display(ui: &mut Ui, panel: &mut Panel<'_>) {
                 PNG only. Click to switch.  [T]";
     let button = Button::new(name).min_size(egui::vec2(58.0, 0.0));
     if ui.add(button).on_hover_text(help).clicked() {
-        display.curve = next;
+        tone.curve = next;
         edit = Some("tone curve");
     }
-    let field = DragValue::new(&mut display.exposure)
+    let field = DragValue::new(&mut tone.exposure)
         .range(-20.0..=20.0)
         .speed(0.02)
         .custom_formatter(|value, _| format!("{value:+.1}"));
