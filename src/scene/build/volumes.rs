@@ -152,7 +152,7 @@ fn emission(source: &mut Source, settings: &VolumeSettings, key: &str) -> Result
         },
         EmissionMode::Source => Emission::Source { le: emission.le().rgb() },
         EmissionMode::Blackbody => Emission::Blackbody(Blackbody {
-            grid: source.scalar(grid, key)?,
+            field: source.scalar(grid, key)?,
             kelvin_offset: emission.kelvin_offset(),
             kelvin_scale: emission.kelvin_scale(),
             intensity: Rgb::splat(emission.intensity()),
@@ -163,7 +163,7 @@ fn emission(source: &mut Source, settings: &VolumeSettings, key: &str) -> Result
             },
         }),
         EmissionMode::Ramp => Emission::Ramp(ColorRamp {
-            grid: source.scalar(grid, key)?,
+            field: source.scalar(grid, key)?,
             stops: emission.stops().iter().map(|&[value, r, g, b]| (value, Rgb::new(r, g, b))).collect(),
             intensity: Rgb::splat(emission.intensity()),
             times_density: emission.times_density(),
