@@ -38,9 +38,9 @@ pub fn all() -> &'static [Key] {
 }
 
 /// The key at `path`, where list items may be `N` or numbers (`volume.0.density.scale`).
-pub fn find(path: &str) -> Option<&'static Key> {
+pub fn find(path: &str) -> Option<Key> {
     let path = general(path);
-    all().iter().find(|key| key.path == path)
+    all().iter().find(|key| key.path == path).cloned()
 }
 
 /// The names that the key at `path` chooses among; empty if it is no such choice.

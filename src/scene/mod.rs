@@ -1,6 +1,9 @@
 //! Scenes: the one settings struct, its file format, and what is built from it.
 
+mod build;
+pub mod cache;
 mod check;
+mod embedded;
 mod files;
 pub mod keys;
 mod overrides;
@@ -10,6 +13,9 @@ mod save;
 mod schema;
 pub mod settings;
 
+pub use build::{build, camera};
+pub use cache::VolumeCache;
+pub use embedded::DEFAULT_SCENE;
 pub use overrides::Overrides;
 pub use parse::{apply, parse, tidy, validate};
 pub use save::{save, to_toml};

@@ -114,7 +114,7 @@ impl ScalarField {
 pub enum RgbField {
     /// The same everywhere.
     Constant(Rgb),
-    /// A scalar times a color.
+    /// A scalar field times a color.
     Tinted(ScalarField, Rgb),
     /// A stored grid of colors.
     Grid(GridField<Vec3A>),
@@ -135,8 +135,8 @@ impl RgbField {
     pub fn upper_bound(&self, local: &Aabb) -> Rgb {
         match self {
             Self::Constant(value) => *value,
-            Self::Tinted(grid, tint) => {
-                let (min, max) = grid.range(local);
+            Self::Tinted(field, tint) => {
+                let (min, max) = field.range(local);
                 (min * *tint).max(max * *tint)
             }
             Self::Grid(grid) => grid.range(local).1,
