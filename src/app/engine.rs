@@ -6,7 +6,8 @@ use std::time::{Duration, Instant};
 
 use glam::UVec2;
 
-use super::loader::{Built, Job, Loader};
+use super::grids::Grids;
+use super::loader::{Built, Job, Loader, Report};
 use super::state::Document;
 use crate::error::{Error, Result};
 use crate::render::{Picture, Request, Session};
@@ -32,6 +33,7 @@ pub struct Engine {
     loader: Loader,
     session: Session,
     built: Option<Built>,
+    grids: Arc<Grids>,
     opening: Option<String>,
     building: Option<(Settings, Instant)>,
     /// Settings that could not be built, so that they are not tried again in every frame.
@@ -71,6 +73,7 @@ impl Engine {
             loader: Loader::new(wake.clone())?,
             session: Session::new(threads, wake)?,
             built: None,
+            grids: Arc::default(),
             opening: None,
             building: None,
             refused: None,
@@ -119,6 +122,11 @@ impl Engine {
         self.built.as_ref()
     }
 
+    /// The grids of all files seen so far.
+    pub fn grids(&self) -> &Arc<Grids> {
+        &self.grids
+    }
+
     /// The session, for snapshots of its film.
     pub fn session(&self) -> &Session {
         &self.session
@@ -158,7 +166,14 @@ impl Engine {
     /// Takes in what the threads have done. Called at the start of a frame.
     pub fn poll(&mut self) -> Vec<News> {
         let mut news = Vec::new();
-        while let Some(outcome) = self.loader.poll() {
+        while let Some(report) = self.loader.poll() {
+            let outcome = match report {
+                Report::Ended(outcome) => outcome,
+                Report::Grids(grids) => {
+                    self.grids = grids;
+                    continue;
+                }
+            };
             self.building = None;
             match (outcome.job, outcome.result) {
                 (_, Err(Error::Cancelled)) => self.opening = None,

@@ -4,6 +4,7 @@
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, mpsc};
 
+use super::grids::{self, Grids};
 use crate::error::{Error, Result};
 use crate::scene::{self, Settings, VolumeCache};
 use crate::transport::Scene;
@@ -15,6 +16,14 @@ pub enum Job {
     Open(String),
     /// Build these settings.
     Build(Settings),
+}
+
+/// What the loader has to say.
+pub enum Report {
+    /// A job has ended.
+    Ended(Outcome),
+    /// The grids of all files seen so far.
+    Grids(Arc<Grids>),
 }
 
 /// What came of a job.
@@ -37,7 +46,7 @@ pub struct Built {
 /// The handle of the thread. Dropping it cancels and ends the thread.
 pub struct Loader {
     shared: Arc<Shared>,
-    outcomes: mpsc::Receiver<Outcome>,
+    reports: mpsc::Receiver<Report>,
     thread: Option<std::thread::JoinHandle<()>>,
 }
 
@@ -46,8 +55,8 @@ struct Shared {
     wake: Condvar,
     /// Counts the requests; work for an older one is cancelled.
     latest: AtomicU64,
-    /// Fraction of the present job, as the bits of an f32.
-    progress: AtomicU32,
+    /// Percents done of the present job.
+    percent: AtomicU32,
 }
 
 #[derive(Default)]
@@ -64,15 +73,15 @@ impl Loader {
             desk: Mutex::default(),
             wake: Condvar::new(),
             latest: AtomicU64::new(0),
-            progress: AtomicU32::new(0),
+            percent: AtomicU32::new(0),
         });
-        let (sender, outcomes) = mpsc::channel();
+        let (sender, reports) = mpsc::channel();
         let worker = shared.clone();
         let thread = std::thread::Builder::new()
             .name("loader".to_owned())
             .spawn(move || work(&worker, &sender, &on_news))
             .map_err(|error| Error::io("the loader thread", error))?;
-        Ok(Self { shared, outcomes, thread: Some(thread) })
+        Ok(Self { shared, reports, thread: Some(thread) })
     }
 
     /// Asks for `job`, cancelling any other.
@@ -88,16 +97,16 @@ impl Loader {
         self.shared.desk().next = None;
     }
 
-    /// The next outcome, if there is one.
-    pub fn poll(&self) -> Option<Outcome> {
-        self.outcomes.try_recv().ok()
+    /// The next report, if there is one.
+    pub fn poll(&self) -> Option<Report> {
+        self.reports.try_recv().ok()
     }
 
     /// The fraction done of the job at work, in 0..=1; `None` while idle.
     pub fn progress(&self) -> Option<f32> {
         let desk = self.shared.desk();
         let busy = desk.busy || desk.next.is_some();
-        busy.then(|| f32::from_bits(self.shared.progress.load(Ordering::Relaxed)))
+        busy.then(|| self.shared.percent.load(Ordering::Relaxed) as f32 / 100.0)
     }
 }
 
@@ -129,7 +138,7 @@ impl Shared {
             }
             if let Some(next) = desk.next.take() {
                 desk.busy = true;
-                self.progress.store(0, Ordering::Relaxed);
+                self.percent.store(0, Ordering::Relaxed);
                 return Some(next);
             }
             desk = self.wake.wait(desk).unwrap_or_else(PoisonError::into_inner);
@@ -137,24 +146,35 @@ impl Shared {
     }
 }
 
-fn work(shared: &Shared, outcomes: &mpsc::Sender<Outcome>, on_news: &(dyn Fn() + Sync)) {
+fn work(shared: &Shared, reports: &mpsc::Sender<Report>, on_news: &(dyn Fn() + Sync)) {
     let cache = VolumeCache::default();
+    let mut grids = Grids::new();
     while let Some((ticket, job)) = shared.next() {
+        let is_latest = || shared.latest.load(Ordering::Relaxed) == ticket;
         let progress = |fraction: f32| {
-            shared.progress.store(fraction.to_bits(), Ordering::Relaxed);
-            on_news();
-            shared.latest.load(Ordering::Relaxed) == ticket
+            let percent = (100.0 * fraction) as u32;
+            if shared.percent.swap(percent, Ordering::Relaxed) != percent {
+                on_news();
+            }
+            is_latest()
         };
         let result = run(&job, &cache, &progress);
-        if shared.latest.load(Ordering::Relaxed) != ticket {
+        if !is_latest() {
             on_news();
             continue;
         }
-        if outcomes.send(Outcome { job, result }).is_err() {
-            return;
-        }
         shared.desk().busy = false;
+        let settings = result.as_ref().ok().map(|built| built.settings.clone());
+        // The receiver lives as long as this thread: the loader joins it.
+        let _ = reports.send(Report::Ended(Outcome { job, result }));
         on_news();
+        let Some(settings) = settings else { continue };
+        let still_latest = |_: f32| is_latest();
+        // What fails here is told when the grid is asked for.
+        if let Ok(true) = grids::add_missing(&mut grids, &settings, &cache, &still_latest) {
+            let _ = reports.send(Report::Grids(Arc::new(grids.clone())));
+            on_news();
+        }
     }
 }
 
@@ -175,7 +195,7 @@ mod tests {
     fn wait(loader: &Loader) -> Outcome {
         let start = Instant::now();
         loop {
-            if let Some(outcome) = loader.poll() {
+            if let Some(Report::Ended(outcome)) = loader.poll() {
                 return outcome;
             }
             assert!(start.elapsed() < Duration::from_secs(60), "no outcome");

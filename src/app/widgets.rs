@@ -13,13 +13,13 @@ use crate::scene::keys;
 /// The help of a key of the scene file, ready for a tooltip.
 pub fn key_help(path: &str) -> String {
     let Some(key) = keys::find(path) else { return path.to_owned() };
-    let unit = key.unit.map_or_else(String::new, |unit| format!(" [{unit}]"));
+    let unit = key.unit.as_ref().map_or_else(String::new, |unit| format!(" [{unit}]"));
     format!("{}\n\n{}{unit}", key.help.trim(), key.path.replace(".N.", "."))
 }
 
 /// The first sentence of a key's help.
 pub fn key_summary(path: &str) -> String {
-    let help = keys::find(path).map(|key| key.help).unwrap_or_default();
+    let help = keys::find(path).map(|key| key.help.clone()).unwrap_or_default();
     let help = help.split_whitespace().collect::<Vec<_>>().join(" ");
     match help.find(". ") {
         Some(end) => help[..=end].to_owned(),

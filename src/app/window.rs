@@ -183,8 +183,8 @@ impl App {
 
     fn layout(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let title = self.title();
-        let built = self.engine.built().cloned();
-        let mut panel = Panel { editor: &mut self.editor, built: built.as_ref(), commands };
+        let grids = self.engine.grids().clone();
+        let mut panel = Panel { editor: &mut self.editor, grids: &grids, commands };
         let bar = Frame::new().fill(color::PANEL).inner_margin(Margin::symmetric(8, 3));
         egui::Panel::top("menu").frame(bar).show(ui, |ui| {
             panels::menu::show(ui, &mut panel, &title);

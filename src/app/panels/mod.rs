@@ -12,7 +12,7 @@ pub mod volume;
 use egui::{CollapsingHeader, RichText, Ui};
 
 use super::commands::Command;
-use super::loader::Built;
+use super::grids::Grids;
 use super::state::Editor;
 use super::theme::color;
 
@@ -20,8 +20,8 @@ use super::theme::color;
 pub struct Panel<'a> {
     /// The document and its record of edits.
     pub editor: &'a mut Editor,
-    /// What was built last; `None` before the first scene.
-    pub built: Option<&'a Built>,
+    /// The grids of all files seen so far.
+    pub grids: &'a Grids,
     /// Commands that buttons ask for.
     pub commands: &'a mut Vec<Command>,
 }

@@ -3,7 +3,7 @@
 use egui::{CollapsingHeader, ComboBox, Grid, RichText, Ui};
 
 use super::{Panel, section};
-use crate::app::grids::{GridSummary, grids_of};
+use crate::app::grids::{GridContents, GridSummary};
 use crate::app::theme::color;
 use crate::app::up_axis;
 use crate::app::widgets::{Number, count, key_help, row, segments, significant};
@@ -62,19 +62,20 @@ fn up_axis_row(ui: &mut Ui, panel: &mut Panel<'_>) {
 }
 
 fn one(ui: &mut Ui, panel: &mut Panel<'_>, index: usize) {
-    let grids = panel.built.map(|built| grids_of(built, index)).unwrap_or_default();
+    let file = panel.editor.document.settings.volume[index].file.as_ref();
+    let grids = file.and_then(|file| panel.grids.get(file)).map_or(&[][..], Vec::as_slice);
     let opened = panel.editor.opened().settings.volume.get(index).cloned().unwrap_or_default();
     let volume = &mut panel.editor.document.settings.volume[index];
     let mut edit = None;
     if !grids.is_empty() {
-        grid_table(ui, index, &grids);
-        edit = edit.or(grid_choice(ui, "Density from", "volume.N.density.grid", index, &grids, {
-            let name = volume.density_grid().to_owned();
-            (&mut volume.density.grid, name)
-        }));
+        grid_table(ui, index, grids);
+        let present = volume.density_grid().to_owned();
+        let choice = (&mut volume.density.grid, present);
+        let key = "volume.N.density.grid";
+        edit = edit.or(grid_choice(ui, "Density from", key, index, grids, choice));
     }
     edit = edit.or(medium(ui, volume, &opened));
-    edit = edit.or(emission(ui, volume, &opened, index, &grids));
+    edit = edit.or(emission(ui, volume, &opened, index, grids));
     if let Some(name) = edit {
         panel.editor.name_edit(name);
     }
@@ -84,15 +85,26 @@ fn grid_table(ui: &mut Ui, index: usize, grids: &[GridSummary]) {
     Grid::new(("grids", index)).num_columns(3).striped(true).spacing([14.0, 2.0]).show(ui, |ui| {
         for grid in grids {
             ui.label(RichText::new(&grid.name).color(color::TEXT));
-            let range = format!("{} … {}", significant(grid.low), significant(grid.high));
-            ui.label(RichText::new(range).monospace().color(color::TEXT))
-                .on_hover_text("The lowest and the highest value in the grid.");
-            let voxels = format!("{} voxels", count(grid.voxels as f64));
-            ui.label(RichText::new(voxels).small().color(color::TEXT_DIM))
-                .on_hover_text("How many voxels hold a value.");
+            match &grid.contents {
+                Ok(contents) => contents_cells(ui, contents),
+                Err(reason) => {
+                    ui.label(RichText::new("not rendered").small().color(color::WARNING))
+                        .on_hover_text(reason);
+                    ui.label("");
+                }
+            }
             ui.end_row();
         }
     });
+}
+
+fn contents_cells(ui: &mut Ui, contents: &GridContents) {
+    let [low, high] = [contents.low, contents.high].map(|value| significant(f64::from(value)));
+    ui.label(RichText::new(format!("{low} … {high}")).color(color::TEXT))
+        .on_hover_text("The lowest and the highest value in the grid.");
+    let voxels = format!("{} voxels", count(contents.voxels as f64));
+    ui.label(RichText::new(voxels).small().color(color::TEXT_DIM))
+        .on_hover_text("How many voxels hold a value.");
 }
 
 /// A choice among the file's grids; the name of the edit if it changed.
