@@ -1,5 +1,7 @@
 //! Flambeau: interactive, progressive preview of fire, smoke, fog and cloud.
 
+#[cfg(feature = "gui")]
+pub mod app;
 pub mod error;
 pub mod image;
 pub mod light;

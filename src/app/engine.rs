@@ -6,8 +6,7 @@ use std::time::{Duration, Instant};
 
 use glam::UVec2;
 
-use super::grids::Grids;
-use super::loader::{Built, Job, Loader, Report};
+use super::loader::{Built, Grids, Job, Loader, Report};
 use super::state::Document;
 use crate::error::{Error, Result};
 use crate::render::{Picture, Request, Session};
@@ -20,8 +19,15 @@ const PATIENCE: Duration = Duration::from_millis(250);
 
 /// What happened since the last frame.
 pub enum News {
-    /// A file was opened: where it came from and what it holds.
-    Opened(String, Settings),
+    /// A file was opened.
+    Opened {
+        /// Where it came from, as the user named it.
+        source: String,
+        /// What it holds.
+        settings: Settings,
+        /// What was guessed for a bare volume, one a line.
+        notes: Vec<String>,
+    },
     /// A file could not be opened, or an edit could not be built.
     Failed(String),
     /// A render was started; the number is its generation.
@@ -180,7 +186,8 @@ impl Engine {
                 (Job::Open(source), Ok(built)) => {
                     self.opening = None;
                     self.refused = None;
-                    news.push(News::Opened(source, built.settings.clone()));
+                    let (settings, notes) = (built.settings.clone(), built.notes.clone());
+                    news.push(News::Opened { source, settings, notes });
                     self.built = Some(built);
                 }
                 (Job::Open(_), Err(error)) => {

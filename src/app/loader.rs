@@ -1,13 +1,16 @@
 //! A thread that reads and builds scenes, so that nothing blocks the window. The latest request
 //! wins: a new one cancels the one at work, and only its outcome is reported.
 
+use std::collections::HashMap;
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, mpsc};
 
-use super::grids::{self, Grids};
-use crate::error::{Error, Result};
-use crate::scene::{self, Settings, VolumeCache};
+use crate::error::{Error, Progress, Result};
+use crate::scene::{self, GridDescription, Overrides, Settings, VolumeCache};
 use crate::transport::Scene;
+
+/// The grids of volume files by the file's name.
+pub type Grids = HashMap<String, Vec<GridDescription>>;
 
 /// What the loader is asked to do.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,6 +42,8 @@ pub struct Outcome {
 pub struct Built {
     /// What it was built from.
     pub settings: Settings,
+    /// What was guessed for a bare volume, one a line.
+    pub notes: Vec<String>,
     /// Ready to sample.
     pub scene: Arc<Scene>,
 }
@@ -171,20 +176,41 @@ fn work(shared: &Shared, reports: &mpsc::Sender<Report>, on_news: &(dyn Fn() + S
         let Some(settings) = settings else { continue };
         let still_latest = |_: f32| is_latest();
         // What fails here is told when the grid is asked for.
-        if let Ok(true) = grids::add_missing(&mut grids, &settings, &cache, &still_latest) {
+        if let Ok(true) = add_missing(&mut grids, &settings, &cache, &still_latest) {
             let _ = reports.send(Report::Grids(Arc::new(grids.clone())));
             on_news();
         }
     }
 }
 
-fn run(job: &Job, cache: &VolumeCache, progress: crate::error::Progress<'_>) -> Result<Built> {
-    let settings = match job {
-        Job::Open(source) => scene::load(source)?,
-        Job::Build(settings) => settings.clone(),
+fn run(job: &Job, cache: &VolumeCache, progress: Progress<'_>) -> Result<Built> {
+    let (settings, notes) = match job {
+        Job::Open(source) => {
+            let opened = scene::open(source, &Overrides::default(), cache, progress)?;
+            (opened.settings, opened.notes)
+        }
+        Job::Build(settings) => (settings.clone(), Vec::new()),
     };
     let scene = Arc::new(scene::build(&settings, cache, progress)?);
-    Ok(Built { settings, scene })
+    Ok(Built { settings, notes, scene })
+}
+
+/// Adds the grids of the files of `settings` that `grids` does not have yet, and reads those that
+/// the scene itself does not need. Whether there were any.
+fn add_missing(
+    grids: &mut Grids,
+    settings: &Settings,
+    cache: &VolumeCache,
+    progress: Progress<'_>,
+) -> Result<bool> {
+    let mut added = false;
+    for name in settings.volume.iter().filter_map(|volume| volume.file.as_ref()) {
+        if !grids.contains_key(name) {
+            grids.insert(name.clone(), scene::describe(name, cache, progress)?.grids);
+            added = true;
+        }
+    }
+    Ok(added)
 }
 
 #[cfg(test)]

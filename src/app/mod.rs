@@ -14,7 +14,6 @@ mod effect;
 mod engine;
 mod files;
 mod frame_stats;
-mod grids;
 mod history;
 mod loader;
 mod navigation;

@@ -1,4 +1,4 @@
-//! Camera moves as pure functions: orbit, pan, dolly, frame.
+//! Camera moves as pure functions: orbit, pan, dolly.
 
 use glam::{Quat, Vec2, Vec3};
 
@@ -68,19 +68,6 @@ impl Pose {
         let (_, _, forward) = self.frame();
         Self { position: self.target - forward * distance, ..self }
     }
-
-    /// Looks at the middle of the box from the same side, so that all of it is in the picture of
-    /// horizontal angle `fov_x` degrees and width over height `aspect`.
-    #[must_use]
-    pub fn frame_box(self, low: Vec3, high: Vec3, fov_x: f32, aspect: f32) -> Self {
-        let target = 0.5 * (low + high);
-        let radius = (0.5 * (high - low).length()).max(1e-4);
-        let half_x = 0.5 * fov_x.clamp(1.0, 170.0).to_radians();
-        let half_y = (half_x.tan() / aspect.max(0.01)).atan();
-        let (_, _, forward) = self.frame();
-        let distance = radius / half_x.min(half_y).sin();
-        Self { position: target - forward * distance, target, ..self }
-    }
 }
 
 #[cfg(test)]
@@ -116,25 +103,6 @@ mod tests {
         let width = 2.0 * (20.0_f32).to_radians().tan() * to.dot(forward);
         assert!((to.dot(right) / width - drag.x).abs() < 1e-4);
         assert!((-to.dot(up) / width - drag.y).abs() < 1e-4);
-    }
-
-    #[test]
-    fn a_framed_box_fits() {
-        let (low, high) = (Vec3::new(1.0, 2.0, 3.0), Vec3::new(4.0, 9.0, 5.0));
-        for aspect in [0.5, 1.0, 2.5] {
-            let pose = POSE.frame_box(low, high, 36.0, aspect);
-            let (right, up, forward) = pose.frame();
-            let tan_x = 18.0_f32.to_radians().tan();
-            for corner in 0..8 {
-                let pick = |bit: u32, axis: usize| {
-                    if corner & bit == 0 { low[axis] } else { high[axis] }
-                };
-                let to = Vec3::new(pick(1, 0), pick(2, 1), pick(4, 2)) - pose.position;
-                let depth = to.dot(forward);
-                assert!((to.dot(right) / depth).abs() <= tan_x * 1.001);
-                assert!((to.dot(up) / depth).abs() <= tan_x / aspect * 1.001);
-            }
-        }
     }
 
     #[test]

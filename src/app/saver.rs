@@ -89,9 +89,13 @@ impl Saver {
         ended
     }
 
-    /// Whether anything is still being written.
-    pub fn is_busy(&self) -> bool {
-        !self.saves.is_empty()
+    /// Waits for what is still being written; for the end of the program.
+    pub fn finish(&mut self) {
+        for save in self.saves.drain(..) {
+            if let Ok(Err(error)) = save.result.recv() {
+                eprintln!("{error}");
+            }
+        }
     }
 }
 

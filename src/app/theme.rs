@@ -46,8 +46,6 @@ pub mod space {
     pub const TIGHT: f32 = 4.0;
     /// Between rows and columns.
     pub const ROW: f32 = 6.0;
-    /// Between groups.
-    pub const GROUP: f32 = 12.0;
     /// Between a panel's edge and its contents.
     pub const PANEL: i8 = 12;
     /// Width of the panel column.

@@ -1,33 +1,44 @@
-//! The up axis, as one click: turns the camera so that another axis of the world points up in the
-//! picture, and keeps the view otherwise.
+//! The up axis of a volume's file, as one click. A file with y up is turned so that its y becomes
+//! the world's z, which is up everywhere else.
 
-use glam::{Quat, Vec3};
+use glam::{EulerRot, Quat, Vec3};
 
-use super::viewport::pose;
 use crate::scene::Settings;
-use crate::scene::settings::Axis;
+use crate::scene::settings::{Axis, VolumeSettings};
 
-/// The axis that points up in the picture; `None` where it is none of them.
-pub fn of(settings: &Settings) -> Option<Axis> {
-    let up = Vec3::from(settings.camera.up).try_normalize()?;
-    let close = |axis: Vec3| up.dot(axis) > 0.999;
-    match () {
-        () if close(Vec3::X) => Some(Axis::X),
-        () if close(Vec3::Y) => Some(Axis::Y),
-        () if close(Vec3::Z) => Some(Axis::Z),
-        () => None,
+/// The rotation about x, in degrees, that puts a file with `up` on its feet.
+fn rotation(up: Axis) -> f32 {
+    if up == Axis::Y { 90.0 } else { 0.0 }
+}
+
+/// The axis of the file that points up in the world; `None` where it is turned otherwise.
+pub fn of(volume: &VolumeSettings) -> Option<Axis> {
+    if volume.matrix.is_some() {
+        return None;
+    }
+    [Axis::Y, Axis::Z].into_iter().find(|axis| volume.rotate == [rotation(*axis), 0.0, 0.0])
+}
+
+/// Makes `up` of the volume `index` point up. The camera follows a volume that stands alone.
+pub fn set(settings: &mut Settings, index: usize, up: Axis) {
+    let alone = settings.volume.len() == 1;
+    let Some(volume) = settings.volume.get_mut(index) else { return };
+    let before = turn(volume.rotate);
+    volume.rotate = [rotation(up), 0.0, 0.0];
+    if alone {
+        let origin = Vec3::from(volume.translate);
+        let camera = &mut settings.camera;
+        let (target, offset) = (Vec3::from(camera.target), Vec3::from(camera.position));
+        let offset = offset - target;
+        let moved = origin + turn(volume.rotate) * (before.inverse() * (target - origin));
+        camera.target = moved.to_array();
+        camera.position = (moved + offset).to_array();
     }
 }
 
-/// Makes `axis` point up, turning the camera around its target with it.
-pub fn set(settings: &mut Settings, axis: Axis) {
-    let before = pose(&settings.camera);
-    let up = [Vec3::X, Vec3::Y, Vec3::Z][axis.index()];
-    let Some(old) = before.up.try_normalize() else { return };
-    let turn = Quat::from_rotation_arc(old, up);
-    let position = before.target + turn * (before.position - before.target);
-    settings.camera.position = position.to_array();
-    settings.camera.up = up.to_array();
+fn turn(degrees: [f32; 3]) -> Quat {
+    let [x, y, z] = degrees.map(f32::to_radians);
+    Quat::from_euler(EulerRot::ZYX, z, y, x)
 }
 
 #[cfg(test)]
@@ -35,15 +46,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn switching_there_and_back_is_where_it_was() {
-        let mut settings = Settings::default();
-        settings.camera.position = [1.0, -6.0, 2.0];
-        set(&mut settings, Axis::Y);
-        assert_eq!(of(&settings), Some(Axis::Y));
-        // What was above the target is above it still.
-        assert!((settings.camera.position[1] - 2.0).abs() < 1e-5);
-        set(&mut settings, Axis::Z);
-        let back = Vec3::from(settings.camera.position);
-        assert!(back.distance(Vec3::new(1.0, -6.0, 2.0)) < 1e-5);
+    fn the_camera_keeps_looking_at_the_volume() {
+        let mut settings =
+            Settings { volume: vec![VolumeSettings::default()], ..Settings::default() };
+        settings.camera.target = [0.0, 0.0, 2.0];
+        settings.camera.position = [0.0, -6.0, 3.0];
+        let z_up = settings.clone();
+        assert_eq!(of(&settings.volume[0]), Some(Axis::Z));
+        // What the file calls z is now along the world's -y.
+        set(&mut settings, 0, Axis::Y);
+        assert_eq!(of(&settings.volume[0]), Some(Axis::Y));
+        assert!(Vec3::from(settings.camera.target).distance(Vec3::new(0.0, -2.0, 0.0)) < 1e-5);
+        assert!(Vec3::from(settings.camera.position).distance(Vec3::new(0.0, -8.0, 1.0)) < 1e-5);
+        set(&mut settings, 0, Axis::Z);
+        assert!(Vec3::from(settings.camera.position).distance(z_up.camera.position.into()) < 1e-5);
     }
 }

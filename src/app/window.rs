@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use egui::{Context, Frame, Margin, ScrollArea, Ui};
-use glam::{UVec2, Vec3};
+use glam::UVec2;
 
 use super::commands::Command;
 use super::display;
@@ -17,10 +17,10 @@ use super::panels::{self, Panel};
 use super::saver::{Content, Saver};
 use super::state::Editor;
 use super::theme::{self, color, space};
-use super::viewport::{Viewport, pose, set_pose};
+use super::viewport::Viewport;
 use crate::error::Result;
 use crate::image::tone::ToneCurve;
-use crate::scene::DEFAULT_SCENE;
+use crate::scene::{self, DEFAULT_SCENE};
 
 /// How the window is set up.
 #[derive(Clone, Debug, Default)]
@@ -45,6 +45,8 @@ pub struct App {
     path_bar: Option<PathBar>,
     /// What is open, as the user named it.
     source: String,
+    /// What was guessed when it was opened.
+    notes: Vec<String>,
     folded: bool,
     help: bool,
     largest: u32,
@@ -78,6 +80,7 @@ impl App {
             dialog: None,
             path_bar: None,
             source,
+            notes: Vec::new(),
             folded: false,
             help: false,
             largest: display::largest_size(state),
@@ -122,8 +125,9 @@ impl App {
         self.bring_up_to_date(&ctx);
     }
 
-    /// Writes the diagnostic figures, if they were asked for.
-    pub fn close(&self) {
+    /// Finishes what is being saved and writes the diagnostic figures, if they were asked for.
+    pub fn close(&mut self) {
+        self.saver.finish();
         if let Some(stats) = &self.stats {
             stats.write();
         }
@@ -132,7 +136,8 @@ impl App {
     fn take_in(&mut self, ctx: &Context, news: &mut Vec<News>) {
         for item in news.drain(..) {
             match item {
-                News::Opened(source, settings) => {
+                News::Opened { source, settings, notes } => {
+                    self.notes = notes;
                     self.editor.open(settings);
                     self.viewport.zoom = Default::default();
                     self.notices.clear(Level::Failed);
@@ -184,7 +189,7 @@ impl App {
     fn layout(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let title = self.title();
         let grids = self.engine.grids().clone();
-        let mut panel = Panel { editor: &mut self.editor, grids: &grids, commands };
+        let mut panel = Panel { editor: &mut self.editor, grids: &grids, notes: &self.notes, commands };
         let bar = Frame::new().fill(color::PANEL).inner_margin(Margin::symmetric(8, 3));
         egui::Panel::top("menu").frame(bar).show(ui, |ui| {
             panels::menu::show(ui, &mut panel, &title);
@@ -251,19 +256,22 @@ impl App {
     }
 
     fn bring_up_to_date(&mut self, ctx: &Context) {
-        let document = &self.editor.document;
-        let size = if document.keep_size {
-            let [width, height] = document.settings.film.size;
-            Some(UVec2::new(width, height).clamp(UVec2::ONE, UVec2::splat(self.largest)))
-        } else {
-            self.viewport.film_size()
-        };
-        let Some(size) = size else { return };
+        let Some(size) = self.film_size() else { return };
         let mut news = Vec::new();
-        if let Some(wait) = self.engine.update(document, size, &mut news) {
+        if let Some(wait) = self.engine.update(&self.editor.document, size, &mut news) {
             ctx.request_repaint_after(wait.max(Duration::from_millis(1)));
         }
         self.take_in_started(&news);
+    }
+
+    /// The size of the film: its own or the window's; `None` before the first frame.
+    fn film_size(&self) -> Option<UVec2> {
+        let document = &self.editor.document;
+        if document.keep_size {
+            let size = UVec2::from(document.settings.film.size);
+            return Some(size.clamp(UVec2::ONE, UVec2::splat(self.largest)));
+        }
+        self.viewport.film_size()
     }
 
     fn take_in_started(&mut self, news: &[News]) {
@@ -409,11 +417,9 @@ impl App {
         let bounds = built.scene.world.instances().iter().map(|instance| *instance.bounds());
         let bounds = bounds.filter(|bounds| bounds.size().is_finite());
         let Some(bounds) = bounds.reduce(|all, bounds| all.union(&bounds)) else { return };
-        let (low, high) = (Vec3::from(bounds.min), Vec3::from(bounds.max));
-        let size = self.viewport.film_size().unwrap_or(UVec2::ONE).as_vec2();
+        let size = self.film_size().unwrap_or(UVec2::ONE).as_vec2();
         let camera = &mut self.editor.document.settings.camera;
-        let framed = pose(camera).frame_box(low, high, camera.fov_x, size.x / size.y);
-        set_pose(camera, framed);
+        *camera = scene::frame(camera, &bounds, size.x / size.y);
         self.editor.name_edit("frame the volume");
     }
 }

@@ -12,7 +12,7 @@ pub mod volume;
 use egui::{CollapsingHeader, RichText, Ui};
 
 use super::commands::Command;
-use super::grids::Grids;
+use super::loader::Grids;
 use super::state::Editor;
 use super::theme::color;
 
@@ -22,6 +22,8 @@ pub struct Panel<'a> {
     pub editor: &'a mut Editor,
     /// The grids of all files seen so far.
     pub grids: &'a Grids,
+    /// What was guessed when a bare volume was opened, one a line.
+    pub notes: &'a [String],
     /// Commands that buttons ask for.
     pub commands: &'a mut Vec<Command>,
 }

@@ -46,14 +46,14 @@ fn progress(ui: &mut Ui, stats: &RenderStats, engine: &Engine) {
     let spp = stats.samples_per_pixel;
     let spp = if spp < 10.0 { format!("{spp:.1}") } else { format!("{spp:.0}") };
     figure(ui, &spp, "spp", "Samples per pixel so far.", 38.0);
-    figure(ui, &seconds(stats.seconds), "", "Time spent on this picture.", 44.0);
+    figure(ui, &seconds(stats.seconds), "", "Time spent on this picture.", 50.0);
     let noise = match stats.noise {
-        Some(noise) => format!("{:.2}", 100.0 * noise),
+        Some(noise) => percent(noise),
         None => "–".to_owned(),
     };
     let help = "Noise: the standard error of the picture relative to its brightness. It halves \
                 when the samples quadruple.";
-    figure(ui, &noise, "% noise", help, 38.0);
+    figure(ui, &noise, "% noise", help, 42.0);
     let rate = if stats.seconds > 0.0 { stats.tracking_steps as f64 / stats.seconds } else { 0.0 };
     let help = "Tentative collisions a second: steps through the volume, real and null.";
     figure(ui, &count(rate), "collisions/s", help, 50.0);
@@ -84,6 +84,17 @@ fn figure(ui: &mut Ui, value: &str, unit: &str, help: &str, width: f32) {
             ui.label(RichText::new(unit).color(color::TEXT_DIM)).on_hover_text(help);
         }
     });
+}
+
+/// A fraction in percent, in about three digits.
+fn percent(fraction: f64) -> String {
+    let percent = 100.0 * fraction;
+    let decimals = match percent {
+        _ if percent < 10.0 => 2,
+        _ if percent < 100.0 => 1,
+        _ => 0,
+    };
+    format!("{percent:.decimals$}")
 }
 
 fn seconds(seconds: f64) -> String {

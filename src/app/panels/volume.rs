@@ -2,11 +2,11 @@
 
 use egui::{CollapsingHeader, ComboBox, Grid, RichText, Ui};
 
-use super::{Panel, section};
-use crate::app::grids::{GridContents, GridSummary};
+use super::{Panel, explain, section};
 use crate::app::theme::color;
 use crate::app::up_axis;
 use crate::app::widgets::{Number, count, key_help, row, segments, significant};
+use crate::scene::{GridDescription, Settings, VoxelDescription};
 use crate::scene::settings::{
     Albedo, Axis, Color, EmissionMode, EmissionSettings, Normalize, VolumeSettings,
 };
@@ -14,10 +14,12 @@ use crate::scene::settings::{
 /// Shows the section.
 pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
     section(ui, "Volume", |ui| {
-        up_axis_row(ui, panel);
         let volumes = panel.editor.document.settings.volume.len();
         if volumes == 0 {
             ui.weak("There is no volume in this scene.");
+        }
+        for note in panel.notes {
+            explain(ui, note);
         }
         for index in 0..volumes {
             let title = title(&panel.editor.document.settings.volume[index], index);
@@ -48,25 +50,28 @@ fn title(volume: &VolumeSettings, index: usize) -> String {
     }
 }
 
-fn up_axis_row(ui: &mut Ui, panel: &mut Panel<'_>) {
-    let settings = &mut panel.editor.document.settings;
+fn up_axis_row(ui: &mut Ui, settings: &mut Settings, index: usize) -> Option<&'static str> {
     let axes = [Axis::Y, Axis::Z];
-    let chosen = up_axis::of(settings).and_then(|up| axes.iter().position(|axis| *axis == up));
+    let present = settings.volume.get(index).and_then(up_axis::of);
+    let chosen = axes.iter().position(|axis| Some(*axis) == present);
     let help = "Which way is up in the file: Houdini's files have y up, Blender's z.";
-    let choices = [("Y up", help), ("Z up", help)];
-    let clicked = row(ui, "Up axis", help, |ui| segments(ui, &choices, chosen));
-    if let Some(axis) = clicked.inner.and_then(|index| axes.get(index)) {
-        up_axis::set(settings, *axis);
-        panel.editor.name_edit("up axis");
-    }
+    let clicked = row(ui, "Up axis", help, |ui| segments(ui, &[("Y up", help), ("Z up", help)], chosen));
+    let axis = clicked.inner.and_then(|clicked| axes.get(clicked))?;
+    up_axis::set(settings, index, *axis);
+    Some("up axis")
 }
 
 fn one(ui: &mut Ui, panel: &mut Panel<'_>, index: usize) {
     let file = panel.editor.document.settings.volume[index].file.as_ref();
     let grids = file.and_then(|file| panel.grids.get(file)).map_or(&[][..], Vec::as_slice);
     let opened = panel.editor.opened().settings.volume.get(index).cloned().unwrap_or_default();
-    let volume = &mut panel.editor.document.settings.volume[index];
+    let settings = &mut panel.editor.document.settings;
+    let volume = &settings.volume[index];
     let mut edit = None;
+    if volume.file.is_some() && volume.matrix.is_none() {
+        edit = up_axis_row(ui, settings, index);
+    }
+    let volume = &mut settings.volume[index];
     if !grids.is_empty() {
         grid_table(ui, index, grids);
         let present = volume.density_grid().to_owned();
@@ -81,13 +86,14 @@ fn one(ui: &mut Ui, panel: &mut Panel<'_>, index: usize) {
     }
 }
 
-fn grid_table(ui: &mut Ui, index: usize, grids: &[GridSummary]) {
+fn grid_table(ui: &mut Ui, index: usize, grids: &[GridDescription]) {
     Grid::new(("grids", index)).num_columns(3).striped(true).spacing([14.0, 2.0]).show(ui, |ui| {
         for grid in grids {
             ui.label(RichText::new(&grid.name).color(color::TEXT));
-            match &grid.contents {
-                Ok(contents) => contents_cells(ui, contents),
-                Err(reason) => {
+            match &grid.voxels {
+                Some(voxels) => voxel_cells(ui, voxels),
+                None => {
+                    let reason = grid.unsupported.as_deref().unwrap_or_default();
                     ui.label(RichText::new("not rendered").small().color(color::WARNING))
                         .on_hover_text(reason);
                     ui.label("");
@@ -98,11 +104,11 @@ fn grid_table(ui: &mut Ui, index: usize, grids: &[GridSummary]) {
     });
 }
 
-fn contents_cells(ui: &mut Ui, contents: &GridContents) {
-    let [low, high] = [contents.low, contents.high].map(|value| significant(f64::from(value)));
+fn voxel_cells(ui: &mut Ui, voxels: &VoxelDescription) {
+    let [low, high] = [voxels.min, voxels.max].map(|value| significant(f64::from(value)));
     ui.label(RichText::new(format!("{low} … {high}")).color(color::TEXT))
         .on_hover_text("The lowest and the highest value in the grid.");
-    let voxels = format!("{} voxels", count(contents.voxels as f64));
+    let voxels = format!("{} voxels", count(voxels.active as f64));
     ui.label(RichText::new(voxels).small().color(color::TEXT_DIM))
         .on_hover_text("How many voxels hold a value.");
 }
@@ -113,7 +119,7 @@ fn grid_choice(
     name: &'static str,
     key: &str,
     index: usize,
-    grids: &[GridSummary],
+    grids: &[GridDescription],
     (chosen, present): (&mut Option<String>, String),
 ) -> Option<&'static str> {
     let help = key_help(key);
@@ -214,7 +220,7 @@ fn emission(
     volume: &mut VolumeSettings,
     opened: &VolumeSettings,
     index: usize,
-    grids: &[GridSummary],
+    grids: &[GridDescription],
 ) -> Option<&'static str> {
     let mut edit = emission_mode(ui, volume, index);
     if let (Some(present), false) = (volume.emission_grid().map(str::to_owned), grids.is_empty()) {
