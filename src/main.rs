@@ -1,1 +1,3 @@
-fn main() {}
+fn main() {
+    if let Err(e) = flambeau::app::run(std::env::args().nth(1)) { eprintln!("{e}"); std::process::exit(1); }
+}

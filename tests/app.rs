@@ -198,8 +198,9 @@ fn a_slider_restarts_the_render_and_undo_brings_the_value_back() {
     window.harness.step();
     window.settle();
     assert_eq!(density(&window), Some(5.0));
-    window.until_finished();
-    assert!(window.app().engine().picture().unwrap().generation > before);
+    window.until("a new render is shown", |app| {
+        app.engine().picture().is_some_and(|picture| picture.generation > before)
+    });
     assert_eq!(window.app().editor().undo_name(), Some("density"));
 
     let field = window.harness.get_by_role_and_label(Role::SpinButton, "Density");
