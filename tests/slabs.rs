@@ -74,7 +74,11 @@ fn reflectance_and_transmittance() {
             for preset in [Preset::Baseline, Preset::Full] {
                 let scene = with_strategy(&scene, preset.strategy());
                 let label = format!("{what} of g {g}, albedo {albedo}, depth {depth}, {preset}");
-                verdicts.check(&label, &measure(&scene, paths_for(expected, &scene.strategy)), expected);
+                verdicts.check(
+                    &label,
+                    &measure(&scene, paths_for(expected, &scene.strategy)),
+                    expected,
+                );
             }
         }
     }
@@ -91,7 +95,8 @@ fn emissivity_in_every_combination_of_toggles() {
         let scene = build(&slab(g, albedo, depth, r#"emission = { mode = "source", le = 1.0 }"#));
         for strategy in all_strategies() {
             let label = format!("ε of g {g}, albedo {albedo}, depth {depth}, {}", name(&strategy));
-            let estimate = measure(&with_strategy(&scene, strategy), paths_for(emissivity, &strategy));
+            let estimate =
+                measure(&with_strategy(&scene, strategy), paths_for(emissivity, &strategy));
             verdicts.check(&label, &estimate, emissivity);
         }
     }
@@ -107,7 +112,11 @@ fn half_spaces() {
         for preset in [Preset::Baseline, Preset::Full] {
             let scene = with_strategy(&scene, preset.strategy());
             let label = format!("half space of albedo {albedo}, {preset}");
-            verdicts.check(&label, &measure(&scene, paths_for(expected, &scene.strategy)), expected);
+            verdicts.check(
+                &label,
+                &measure(&scene, paths_for(expected, &scene.strategy)),
+                expected,
+            );
         }
     }
     verdicts.finish();

@@ -36,12 +36,8 @@ trait Walk {
     }
 
     /// A tentative collision under the majorant [`Collision::rate`].
-    fn collide(
-        &mut self,
-        medium: &MediumRay,
-        at: &Collision,
-        rng: &mut PathRng,
-    ) -> ControlFlow<()>;
+    fn collide(&mut self, medium: &MediumRay, at: &Collision, rng: &mut PathRng)
+    -> ControlFlow<()>;
 }
 
 /// A tentative collision.
