@@ -4,7 +4,7 @@ use glam::Vec3A;
 
 use super::{
     blackbody,
-    field::{GridField, RgbField},
+    field::{RgbField, ScalarField},
 };
 use crate::math::{Aabb, Rgb, luminance};
 
@@ -27,15 +27,15 @@ pub enum Emission {
     },
     /// Color by temperature.
     Blackbody(Blackbody),
-    /// Color by a ramp over a grid's value.
+    /// Color by a ramp over a field's value.
     Ramp(ColorRamp),
 }
 
-/// Black-body emission driven by a temperature grid.
+/// Black-body emission driven by a temperature field.
 #[derive(Clone, Debug)]
 pub struct Blackbody {
-    /// The grid that stands for temperature.
-    pub grid: GridField<f32>,
+    /// The field that stands for temperature.
+    pub field: ScalarField,
     /// kelvin = (value − offset) · scale.
     pub kelvin_offset: f32,
     /// See `kelvin_offset`.
@@ -48,11 +48,11 @@ pub struct Blackbody {
     pub t4_reference: Option<f32>,
 }
 
-/// Emission by a piecewise linear color ramp over a grid's value, constant beyond its ends.
+/// Emission by a piecewise linear color ramp over a field's value, constant beyond its ends.
 #[derive(Clone, Debug)]
 pub struct ColorRamp {
-    /// The grid that drives it.
-    pub grid: GridField<f32>,
+    /// The field that drives it.
+    pub field: ScalarField,
     /// Stops in ascending order of value; at least one.
     pub stops: Vec<(f32, Rgb)>,
     /// Multiplier, radiance per length.
@@ -95,7 +95,7 @@ impl Emission {
 
 impl Blackbody {
     fn at(&self, local: Vec3A, density: f32) -> Rgb {
-        let kelvin = (self.grid.at(local) - self.kelvin_offset) * self.kelvin_scale;
+        let kelvin = (self.field.at(local) - self.kelvin_offset) * self.kelvin_scale;
         let mask = if self.times_density { density } else { 1.0 };
         blackbody::peak_normalized(kelvin) * self.intensity * (self.brightness(kelvin) * mask)
     }
@@ -105,7 +105,7 @@ impl Blackbody {
     }
 
     fn upper_bound(&self, local: &Aabb, density_max: f32) -> f32 {
-        let (low, high) = self.grid.range(local);
+        let (low, high) = self.field.range(local);
         let (a, b) = (
             (low - self.kelvin_offset) * self.kelvin_scale,
             (high - self.kelvin_offset) * self.kelvin_scale,
@@ -123,7 +123,7 @@ impl Blackbody {
 impl ColorRamp {
     fn at(&self, local: Vec3A, density: f32) -> Rgb {
         let mask = if self.times_density { density } else { 1.0 };
-        self.color(self.grid.at(local)) * self.intensity * mask
+        self.color(self.field.at(local)) * self.intensity * mask
     }
 
     fn color(&self, value: f32) -> Rgb {
@@ -136,7 +136,7 @@ impl ColorRamp {
     }
 
     fn upper_bound(&self, local: &Aabb, density_max: f32) -> f32 {
-        let (low, high) = self.grid.range(local);
+        let (low, high) = self.field.range(local);
         let inside = self.stops.iter().filter(|s| s.0 > low && s.0 < high).map(|s| s.1);
         let color = inside.fold(self.color(low).max(self.color(high)), Rgb::max);
         let mask = if self.times_density { density_max } else { 1.0 };

@@ -114,8 +114,8 @@ impl ScalarField {
 pub enum RgbField {
     /// The same everywhere.
     Constant(Rgb),
-    /// A stored scalar grid times a color.
-    Tinted(GridField<f32>, Rgb),
+    /// A scalar field times a color.
+    Tinted(ScalarField, Rgb),
     /// A stored grid of colors.
     Grid(GridField<Vec3A>),
 }
@@ -126,7 +126,7 @@ impl RgbField {
     pub fn at(&self, local: Vec3A) -> Rgb {
         match self {
             Self::Constant(value) => *value,
-            Self::Tinted(grid, tint) => grid.at(local) * *tint,
+            Self::Tinted(field, tint) => field.at(local) * *tint,
             Self::Grid(grid) => grid.at(local),
         }
     }
@@ -135,8 +135,8 @@ impl RgbField {
     pub fn upper_bound(&self, local: &Aabb) -> Rgb {
         match self {
             Self::Constant(value) => *value,
-            Self::Tinted(grid, tint) => {
-                let (min, max) = grid.range(local);
+            Self::Tinted(field, tint) => {
+                let (min, max) = field.range(local);
                 (min * *tint).max(max * *tint)
             }
             Self::Grid(grid) => grid.range(local).1,

@@ -9,4 +9,5 @@ pub mod majorant;
 pub mod medium;
 pub mod phase;
 pub mod procedural;
+pub mod vdb;
 pub mod world;

@@ -23,6 +23,7 @@ const SEED: u32 = 0;
 pub struct VolumeSettings {
     /// A name to tell volumes apart; means nothing to the picture.
     #[serde(skip_serializing_if = "String::is_empty")]
+    #[schemars(extend("default" = ""))]
     pub name: String,
     /// A volume file, relative to the scene file, or `builtin:NAME` for one of Flambeau's own.
     pub file: Option<String>,
@@ -30,13 +31,16 @@ pub struct VolumeSettings {
     pub shape: Option<VolumeShape>,
 
     /// Moves the volume; applied after `rotate`.
-    #[schemars(extend("unit" = "length"))]
+    #[schemars(extend("unit" = "length", "default" = [0.0, 0.0, 0.0]))]
+    #[serde(skip_serializing_if = "is_default")]
     pub translate: [f32; 3],
     /// Turns the volume about the x, then the y, then the z axis; applied after `scale`.
-    #[schemars(extend("unit" = "degrees"))]
+    #[schemars(extend("unit" = "degrees", "default" = [0.0, 0.0, 0.0]))]
+    #[serde(skip_serializing_if = "is_default")]
     pub rotate: [f32; 3],
     /// Makes the volume larger or smaller. Density does not change with it.
-    #[schemars(extend("nonzero" = true))]
+    #[schemars(extend("nonzero" = true, "default" = 1.0))]
+    #[serde(skip_serializing_if = "is_default")]
     pub scale: Extent,
     /// The whole placement as 3 rows of 4, in place of `scale`, `rotate` and `translate`.
     #[schemars(extend("default" = null))]
@@ -47,8 +51,10 @@ pub struct VolumeSettings {
     /// The share of light that smoke scatters instead of swallowing: 0 is soot, 1 is cloud.
     pub albedo: Albedo,
     /// Where scattered light goes.
+    #[serde(skip_serializing_if = "is_default")]
     pub phase: PhaseSettings,
     /// How the volume glows.
+    #[serde(skip_serializing_if = "is_default")]
     pub emission: EmissionSettings,
 
     /// Half the edges of the box that is filled, about the volume's own origin.
@@ -183,4 +189,8 @@ or_default! {
         contrast: f32 = CONTRAST;
         seed: u32 = SEED;
     }
+}
+
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }

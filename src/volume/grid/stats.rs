@@ -130,7 +130,7 @@ impl<V: Voxel> Summary<V> {
         GridStats {
             min,
             max,
-            mean: V::from_f64(self.sum.map(|sum| sum / count)),
+            mean: V::from_components(self.sum.map(|sum| (sum / count) as f32)),
             active_voxels: self.active,
             active_bounds: self.active_bounds,
             replaced_values: self.replaced,

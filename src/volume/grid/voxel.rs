@@ -19,6 +19,9 @@ pub trait Voxel:
     /// The value of empty space when nothing else is known.
     const ZERO: Self;
 
+    /// How many components there are: 1 or 3.
+    const COMPONENTS: usize;
+
     /// Linear interpolation: `a` at `t` = 0, `b` at `t` = 1, and exactly `a` when both agree.
     fn lerp(a: Self, b: Self, t: f32) -> Self;
 
@@ -37,12 +40,13 @@ pub trait Voxel:
     /// The components in double precision (the last ones 0 for a scalar).
     fn to_f64(self) -> [f64; 3];
 
-    /// The inverse of [`Voxel::to_f64`], rounded.
-    fn from_f64(components: [f64; 3]) -> Self;
+    /// The value with these components; a scalar takes the first.
+    fn from_components(components: [f32; 3]) -> Self;
 }
 
 impl Voxel for f32 {
     const ZERO: Self = 0.0;
+    const COMPONENTS: usize = 1;
 
     #[inline(always)]
     fn lerp(a: Self, b: Self, t: f32) -> Self {
@@ -71,13 +75,15 @@ impl Voxel for f32 {
         [self.into(), 0.0, 0.0]
     }
 
-    fn from_f64(components: [f64; 3]) -> Self {
-        components[0] as f32
+    #[inline(always)]
+    fn from_components(components: [f32; 3]) -> Self {
+        components[0]
     }
 }
 
 impl Voxel for Vec3A {
     const ZERO: Self = Vec3A::ZERO;
+    const COMPONENTS: usize = 3;
 
     #[inline(always)]
     fn lerp(a: Self, b: Self, t: f32) -> Self {
@@ -106,7 +112,8 @@ impl Voxel for Vec3A {
         self.to_array().map(f64::from)
     }
 
-    fn from_f64(components: [f64; 3]) -> Self {
-        Vec3A::from_array(components.map(|c| c as f32))
+    #[inline(always)]
+    fn from_components(components: [f32; 3]) -> Self {
+        Vec3A::from_array(components)
     }
 }

@@ -1,0 +1,154 @@
+//! What a file holds, known without reading its voxels.
+
+use std::borrow::Cow;
+use std::io::Read;
+use std::path::Path;
+use std::sync::Arc;
+
+use super::entry::{GridInfo, TreePlace};
+use super::header::Header;
+use super::metadata::{self, Metadata};
+use super::stream::{Fault, Result as Step, Stream};
+use super::tree::{self, Tree};
+use super::{VdbFile, VdbGrid, VdbValues};
+use crate::error::{Error, Progress, Result};
+use crate::volume::grid::{SparseGrid, Voxel};
+
+/// A file's list of grids, from which single ones can be loaded.
+#[derive(Debug)]
+pub struct Directory {
+    file: String,
+    bytes: Cow<'static, [u8]>,
+    /// Version of the file format.
+    pub version: u32,
+    /// The file's own named values.
+    pub metadata: Metadata,
+    /// The grids in the order of the file.
+    pub grids: Vec<GridInfo>,
+}
+
+impl Directory {
+    /// Reads a file's list of grids.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if the file cannot be read, [`Error::Invalid`] if it is damaged or no OpenVDB
+    /// file, [`Error::Unsupported`] for another version, [`Error::Cancelled`].
+    pub fn open(path: impl AsRef<Path>, progress: Progress) -> Result<Self> {
+        let path = path.as_ref();
+        let bytes = read_file(path, progress)?;
+        Self::parse(&path.display().to_string(), bytes, progress)
+    }
+
+    /// The same from memory; `file` names it in messages.
+    ///
+    /// # Errors
+    /// As [`Directory::open`], except for [`Error::Io`].
+    pub fn parse(
+        file: &str,
+        bytes: impl Into<Cow<'static, [u8]>>,
+        progress: Progress,
+    ) -> Result<Self> {
+        let bytes = bytes.into();
+        let mut stream = Stream::new(&bytes, 0, "header");
+        let in_file = |fault: Fault| fault.into_error(file, "");
+        let header = Header::read(&mut stream).map_err(in_file)?;
+        let metadata = metadata::read(&mut stream).map_err(in_file)?;
+        stream.enter("list of grids");
+        // Three texts and three offsets are the least that a grid takes.
+        let count = stream.count(36).map_err(in_file)?;
+        let mut grids = Vec::new();
+        for _ in 0..count {
+            let mut name = String::new();
+            let grid = GridInfo::read(&mut stream, &header, &mut name, progress);
+            grids.push(grid.map_err(|fault| fault.into_error(file, &name))?);
+        }
+        Ok(Self { file: file.into(), version: header.version, metadata, grids, bytes })
+    }
+
+    /// Loads the voxels of the grid at `index` of the list, or says why they cannot be.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if the grid is damaged or there is none at `index`,
+    /// [`Error::Unsupported`] if it would take absurd memory, [`Error::Cancelled`].
+    pub fn load(&self, index: usize, progress: Progress) -> Result<VdbValues> {
+        let Some(grid) = self.grids.get(index) else {
+            let reason = format!("there is no grid {index}, the file has {}", self.grids.len());
+            return Err(Error::invalid(&self.file, "", reason));
+        };
+        if let Some(reason) = &grid.unsupported {
+            return Ok(VdbValues::Unsupported(reason.clone()));
+        }
+        self.load_tree(grid, progress).map_err(|fault| fault.into_error(&self.file, &grid.name))
+    }
+
+    /// Loads every grid; those that share a tree share its voxels.
+    ///
+    /// # Errors
+    /// As [`Directory::load`].
+    pub fn load_all(self, progress: Progress) -> Result<VdbFile> {
+        let count = self.grids.len() as f32;
+        let mut values: Vec<VdbValues> = Vec::new();
+        for (index, grid) in self.grids.iter().enumerate() {
+            let earlier = match &grid.tree {
+                TreePlace::Shared(name) if grid.unsupported.is_none() => {
+                    self.position(name).and_then(|parent| values.get(parent).cloned())
+                }
+                _ => None,
+            };
+            let part = |fraction: f32| progress((index as f32 + fraction) / count);
+            values.push(match earlier {
+                Some(values) => values,
+                None => self.load(index, &part)?,
+            });
+        }
+        let Self { version, metadata, grids, .. } = self;
+        let grids = grids.into_iter().zip(values);
+        let grids = grids.map(|(info, values)| VdbGrid { info, values }).collect();
+        Ok(VdbFile { version, metadata, grids })
+    }
+
+    fn position(&self, unique_name: &str) -> Option<usize> {
+        self.grids.iter().position(|grid| grid.unique_name == unique_name)
+    }
+
+    fn load_tree(&self, grid: &GridInfo, progress: Progress) -> Step<VdbValues> {
+        let place = match &grid.tree {
+            TreePlace::Shared(name) => self.position(name).map(|parent| &self.grids[parent].tree),
+            own => Some(own),
+        };
+        match place {
+            Some(TreePlace::Own { bytes, layout }) => {
+                let mut stream = Stream::new(&self.bytes[..bytes.end], bytes.start, "tree");
+                let tree = tree::scan(&mut stream, *layout, progress)?;
+                Ok(match layout.components {
+                    1 => VdbValues::Float(build(&tree, progress)?),
+                    _ => VdbValues::Vec3(build(&tree, progress)?),
+                })
+            }
+            _ => Ok(VdbValues::Unsupported(
+                "shares the voxels of a grid that is not in the file or cannot be loaded".into(),
+            )),
+        }
+    }
+}
+
+fn build<V: Voxel>(tree: &Tree, progress: Progress) -> Step<Arc<SparseGrid<V>>> {
+    tree.build(progress).map(Arc::new)
+}
+
+/// Reads a file in pieces, so that cancelling is prompt on slow disks too.
+fn read_file(path: &Path, progress: Progress) -> Result<Vec<u8>> {
+    const PIECE: u64 = 8 << 20;
+    let failed = |error| Error::io(path, error);
+    let mut file = std::fs::File::open(path).map_err(failed)?;
+    let mut bytes = Vec::new();
+    loop {
+        if !progress(0.0) {
+            return Err(Error::Cancelled);
+        }
+        let read = file.by_ref().take(PIECE).read_to_end(&mut bytes).map_err(failed)?;
+        if read == 0 {
+            return Ok(bytes);
+        }
+    }
+}

@@ -1,0 +1,226 @@
+//! A grid's entry in the list of a file.
+
+use std::fmt;
+use std::ops::Range;
+
+use super::compression::Compression;
+use super::header::Header;
+use super::metadata::{self, MetaValue, Metadata};
+use super::stream::{Fault, Result, Stream};
+use super::transform::{self, Transform};
+use super::tree;
+use super::values::{Layout, Scalar};
+use crate::error::Progress;
+
+/// What a grid is meant to be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum GridClass {
+    /// Not said.
+    Unknown,
+    /// Signed distances to a surface near it, and constants elsewhere; not a density.
+    LevelSet,
+    /// A density.
+    FogVolume,
+    /// A vector whose components are samples at the faces of the voxels.
+    Staggered,
+}
+
+impl GridClass {
+    fn of(metadata: &Metadata) -> Self {
+        match metadata.get("class") {
+            Some(MetaValue::Text(class)) if class == "level set" => Self::LevelSet,
+            Some(MetaValue::Text(class)) if class == "fog volume" => Self::FogVolume,
+            Some(MetaValue::Text(class)) if class == "staggered" => Self::Staggered,
+            _ => Self::Unknown,
+        }
+    }
+}
+
+impl fmt::Display for GridClass {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Unknown => "unknown",
+            Self::LevelSet => "level set",
+            Self::FogVolume => "fog volume",
+            Self::Staggered => "staggered",
+        })
+    }
+}
+
+/// A grid of a file, without its voxels.
+#[derive(Clone, Debug)]
+pub struct GridInfo {
+    /// The name; other grids of the file may have the same one.
+    pub name: String,
+    /// The type as the file has it, such as `Tree_float_5_4_3`.
+    pub type_name: String,
+    /// What the grid is meant to be.
+    pub class: GridClass,
+    /// Whether the values are stored as half floats.
+    pub is_half: bool,
+    /// From index space to the world; [`Transform::IDENTITY`] if it is why the grid is unsupported.
+    pub transform: Transform,
+    /// The grid's own named values.
+    pub metadata: Metadata,
+    /// Why the grid cannot be loaded, if it cannot.
+    pub unsupported: Option<String>,
+    /// The name that no other grid of the file has.
+    pub(super) unique_name: String,
+    pub(super) tree: TreePlace,
+}
+
+/// Where the tree of a grid is.
+#[derive(Clone, Debug)]
+pub(super) enum TreePlace {
+    /// Here.
+    Own { bytes: Range<usize>, layout: Layout },
+    /// It is that of the grid with this unique name.
+    Shared(String),
+    /// Somewhere, of a kind that is not loaded.
+    Foreign,
+}
+
+impl GridInfo {
+    /// Reads an entry and what comes before its tree, and leaves the stream at the next entry;
+    /// `name` is set as soon as it is known.
+    pub(super) fn read(
+        stream: &mut Stream,
+        header: &Header,
+        name: &mut String,
+        progress: Progress,
+    ) -> Result<Self> {
+        let descriptor = Descriptor::read(stream)?;
+        *name = descriptor.name();
+        if header.has_offsets {
+            let mut window = stream.window(descriptor.start, descriptor.end)?;
+            let grid = descriptor.read_grid(&mut window, header)?;
+            stream.skip(&window);
+            return Ok(grid);
+        }
+        let grid = descriptor.read_grid(stream, header)?;
+        match &grid.tree {
+            TreePlace::Shared(_) => {}
+            TreePlace::Own { layout, .. } => {
+                tree::scan(stream, *layout, progress)?;
+            }
+            TreePlace::Foreign => {
+                return Err(Fault::Unsupported(format!(
+                    "the file has no table of offsets, so that a grid of type '{}' cannot be \
+                     stepped over; save the file again without that grid",
+                    grid.type_name
+                )));
+            }
+        }
+        Ok(grid)
+    }
+}
+
+/// An entry as the file has it.
+struct Descriptor {
+    unique_name: String,
+    type_name: String,
+    half: bool,
+    /// Unique name of the grid whose tree this one shares; empty if it has its own.
+    parent: String,
+    start: i64,
+    end: i64,
+}
+
+impl Descriptor {
+    fn read(stream: &mut Stream) -> Result<Self> {
+        stream.enter("list of grids");
+        let unique_name = stream.text()?;
+        let type_text = stream.text()?;
+        let parent = stream.text()?;
+        let [start, _values, end] = [stream.i64()?, stream.i64()?, stream.i64()?];
+        let plain = type_text.strip_suffix("_HalfFloat");
+        let half = plain.is_some();
+        let type_name = plain.unwrap_or(&type_text).to_owned();
+        Ok(Self { unique_name, type_name, half, parent, start, end })
+    }
+
+    /// Names used twice are told apart by a number after this character.
+    fn name(&self) -> String {
+        self.unique_name.split('\u{1e}').next().unwrap_or_default().to_owned()
+    }
+
+    /// Reads what comes before the tree, if the grid has one of its own.
+    fn read_grid(self, stream: &mut Stream, header: &Header) -> Result<GridInfo> {
+        let compression = match header.has_node_masks() {
+            true => Compression::read(stream)?,
+            false => header.compression,
+        };
+        let metadata = metadata::read(stream)?;
+        let (transform, refused) = match transform::read(stream) {
+            Ok(transform) => (transform, None),
+            Err(Fault::Unsupported(reason)) if header.has_offsets => {
+                (Transform::IDENTITY, Some(reason))
+            }
+            Err(fault) => return Err(fault),
+        };
+        let half_flag = metadata.get("is_saved_as_half_float") == Some(&MetaValue::Bool(true));
+        let is_half = self.half || half_flag;
+        let values = stored_values(&self.type_name);
+        let tree = match values {
+            _ if !self.parent.is_empty() => TreePlace::Shared(self.parent.clone()),
+            Some((scalar, components)) => {
+                let node_masks = header.has_node_masks();
+                let layout = Layout { scalar, components, half: is_half, compression, node_masks };
+                TreePlace::Own { bytes: stream.rest(), layout }
+            }
+            None => TreePlace::Foreign,
+        };
+        Ok(GridInfo {
+            name: self.name(),
+            class: GridClass::of(&metadata),
+            is_half,
+            transform,
+            metadata,
+            unsupported: refused.or_else(|| unsupported_type(&self.type_name)),
+            type_name: self.type_name,
+            unique_name: self.unique_name,
+            tree,
+        })
+    }
+}
+
+/// Levels of the usual tree, log2 of the places along an edge from the top down.
+const LEVELS: &str = "5_4_3";
+
+/// The two parts of a type such as `Tree_float_5_4_3`.
+fn split_type(type_name: &str) -> Option<(&str, &str)> {
+    type_name.strip_prefix("Tree_")?.split_once('_')
+}
+
+/// How a tree's values are stored, if it is a usual tree of values of known size.
+fn stored_values(type_name: &str) -> Option<(Scalar, usize)> {
+    let (values, LEVELS) = split_type(type_name)? else { return None };
+    Some(match values {
+        "float" => (Scalar::F32, 1),
+        "double" => (Scalar::F64, 1),
+        "vec3s" => (Scalar::F32, 3),
+        "vec3d" => (Scalar::F64, 3),
+        "int32" => (Scalar::Opaque { bytes: 4 }, 1),
+        "int64" => (Scalar::Opaque { bytes: 8 }, 1),
+        "vec3i" => (Scalar::Opaque { bytes: 4 }, 3),
+        _ => return None,
+    })
+}
+
+/// Why trees of this type are not loaded, if they are not.
+fn unsupported_type(type_name: &str) -> Option<String> {
+    match (split_type(type_name), stored_values(type_name)) {
+        (_, Some((Scalar::F32 | Scalar::F64, _))) => None,
+        (Some((values, LEVELS)), _) if values.starts_with("pt") => Some(format!(
+            "points ('{type_name}'); rasterize them to a density grid before exporting"
+        )),
+        (Some((values, LEVELS)), _) => Some(format!(
+            "values of type {values}; only float, double, vec3s and vec3d grids are loaded"
+        )),
+        (Some((_, levels)), _) => Some(format!(
+            "a tree with levels {levels} instead of the usual {LEVELS}; save the grid with \
+             OpenVDB's default tree"
+        )),
+        (None, _) => Some(format!("a grid of unknown type '{type_name}'")),
+    }
+}

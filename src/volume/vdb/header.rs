@@ -1,0 +1,113 @@
+//! The first bytes of a file: that it is one, and how it is laid out.
+
+use super::compression::Compression;
+use super::stream::{Fault, Result, Stream};
+
+/// The versions of the format that are read. Older ones have other layouts; 220 was OpenVDB 2.0.
+const VERSIONS: std::ops::RangeInclusive<u32> = 220..=225;
+/// From this version on nodes are compressed by their masks and grids name their own compression.
+const NODE_MASK_COMPRESSION: u32 = 222;
+const MAGIC: [u8; 8] = *b" BDV\0\0\0\0";
+const UUID_LENGTH: usize = 36;
+
+/// What the whole file has in common.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Header {
+    pub version: u32,
+    /// Whether each grid says where it ends.
+    pub has_offsets: bool,
+    /// For versions whose grids do not say.
+    pub compression: Compression,
+}
+
+impl Header {
+    pub fn read(stream: &mut Stream) -> Result<Self> {
+        stream.enter("header");
+        check_magic(stream)?;
+        let version = stream.u32()?;
+        if !VERSIONS.contains(&version) {
+            let (first, last) = (VERSIONS.start(), VERSIONS.end());
+            return Err(Fault::Unsupported(format!(
+                "version {version} of the file format, versions {first} to {last} are read; save \
+                 the file again with OpenVDB 2.0 or newer, in a format up to {last}"
+            )));
+        }
+        let _library_version = stream.take(8)?;
+        let has_offsets = stream.u8()? != 0;
+        let zipped = version < NODE_MASK_COMPRESSION && stream.u8()? != 0;
+        let compression = if zipped { Compression::ZIP } else { Compression::NONE };
+        let _uuid = stream.take(UUID_LENGTH)?;
+        Ok(Self { version, has_offsets, compression })
+    }
+
+    /// Whether nodes are compressed by their masks.
+    pub fn has_node_masks(&self) -> bool {
+        self.version >= NODE_MASK_COMPRESSION
+    }
+}
+
+fn check_magic(stream: &mut Stream) -> Result<()> {
+    let mut ahead = stream.clone();
+    let start = ahead.take(stream.remaining().min(24))?;
+    if start.is_empty() {
+        return Err(stream.broken("the file is empty; export or copy it again"));
+    }
+    if start.starts_with(b"version https://git-lfs") {
+        return Err(stream.broken(
+            "this is a Git LFS pointer, not the volume itself; fetch the file with `git lfs pull`",
+        ));
+    }
+    if start.starts_with(b"NanoVDB") {
+        return Err(Fault::Unsupported(
+            "a NanoVDB file; convert it to OpenVDB, for example with `nanovdb_convert`".into(),
+        ));
+    }
+    if start.len() >= MAGIC.len() && !start.starts_with(&MAGIC) {
+        return Err(stream
+            .broken("this is not an OpenVDB file (its first bytes differ); choose a .vdb file"));
+    }
+    stream.take(MAGIC.len()).map(|_| ())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn header(version: u32) -> Vec<u8> {
+        let mut bytes = MAGIC.to_vec();
+        bytes.extend(version.to_le_bytes());
+        bytes.extend([0; 8]);
+        bytes.push(1);
+        if version < NODE_MASK_COMPRESSION {
+            bytes.push(1);
+        }
+        bytes.extend([b'-'; UUID_LENGTH]);
+        bytes
+    }
+
+    fn read(bytes: &[u8]) -> Result<Header> {
+        Header::read(&mut Stream::new(bytes, 0, ""))
+    }
+
+    #[test]
+    fn old_versions_say_for_the_whole_file_whether_it_is_zipped() {
+        let old = read(&header(220)).unwrap();
+        assert!(old.compression.is_zip() && old.has_offsets && !old.has_node_masks());
+        let new = read(&header(225)).unwrap();
+        assert!(!new.compression.is_zip() && new.has_node_masks());
+    }
+
+    #[test]
+    fn what_is_no_vdb_gets_its_own_message() {
+        let message = |bytes: &[u8]| read(bytes).unwrap_err().into_error("f.vdb", "").to_string();
+        assert!(message(b"").contains("empty"));
+        assert!(message(b"version https://git-lfs.github.com/spec/v1\n").contains("git lfs pull"));
+        assert!(message(b"NanoVDB0").contains("NanoVDB"));
+        assert!(message(b"\x89PNG\r\n\x1a\n....").contains("not an OpenVDB file"));
+        assert!(message(b" BDV").contains("cut short"));
+        assert!(message(&header(219)).contains("version 219"));
+        assert!(message(&header(999)).contains("220 to 225"));
+        let full = header(224);
+        (0..full.len()).for_each(|length| assert!(read(&full[..length]).is_err()));
+    }
+}

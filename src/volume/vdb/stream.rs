@@ -1,0 +1,159 @@
+//! A checked cursor over the bytes of a file.
+
+use crate::error::Error;
+
+/// Why a part of a file could not be read; [`Fault::into_error`] adds file and grid.
+#[derive(Debug)]
+pub(super) enum Fault {
+    /// The bytes at `offset` break the format.
+    Broken { section: &'static str, offset: usize, reason: String },
+    /// Well formed, but not something that can be shown.
+    Unsupported(String),
+    /// The caller cancelled.
+    Cancelled,
+}
+
+pub(super) type Result<T, E = Fault> = std::result::Result<T, E>;
+
+impl Fault {
+    /// The error for the user. `grid` is empty for what belongs to the file as a whole.
+    pub fn into_error(self, file: &str, grid: &str) -> Error {
+        let of_grid = if grid.is_empty() { String::new() } else { format!("grid '{grid}'") };
+        match self {
+            Self::Broken { section, offset, reason } => {
+                let comma = if of_grid.is_empty() { "" } else { ", " };
+                let field = format!("{of_grid}{comma}{section}");
+                Error::invalid(file, field, format!("at byte {offset}: {reason}"))
+            }
+            Self::Unsupported(reason) => Error::unsupported(file, of_grid, reason),
+            Self::Cancelled => Error::Cancelled,
+        }
+    }
+}
+
+impl From<Error> for Fault {
+    /// Of errors that know neither file nor grid, as those of the grid builder.
+    fn from(error: Error) -> Self {
+        match error {
+            Error::Cancelled => Self::Cancelled,
+            Error::Unsupported { reason, .. } => Self::Unsupported(reason),
+            other => Self::Broken { section: "tree", offset: 0, reason: other.to_string() },
+        }
+    }
+}
+
+/// Reads values one after another, little-endian; every failure names the section and the offset.
+#[derive(Clone)]
+pub(super) struct Stream<'a> {
+    bytes: &'a [u8],
+    position: usize,
+    section: &'static str,
+}
+
+impl<'a> Stream<'a> {
+    pub fn new(bytes: &'a [u8], position: usize, section: &'static str) -> Self {
+        Self { bytes, position: position.min(bytes.len()), section }
+    }
+
+    /// Names what is read from here on.
+    pub fn enter(&mut self, section: &'static str) {
+        self.section = section;
+    }
+
+    pub fn position(&self) -> usize {
+        self.position
+    }
+
+    /// A stream over the bytes from `start` to `end` of the file, which must lie ahead.
+    pub fn window(&self, start: i64, end: i64) -> Result<Self> {
+        let bounds = usize::try_from(start).ok().zip(usize::try_from(end).ok());
+        match bounds.and_then(|(start, end)| Some((start, self.bytes.get(..end)?))) {
+            Some((start, bytes)) if self.position <= start && start <= bytes.len() => {
+                Ok(Self { bytes, position: start, section: self.section })
+            }
+            _ => Err(self.broken(format!(
+                "the grid should lie between bytes {start} and {end} of a file of {} bytes; the \
+                 file is cut short or damaged, export or copy it again",
+                self.bytes.len()
+            ))),
+        }
+    }
+
+    /// Goes on behind the last byte of `window`.
+    pub fn skip(&mut self, window: &Stream) {
+        self.position = self.position.max(window.bytes.len().min(self.bytes.len()));
+    }
+
+    /// The bytes that are left.
+    pub fn rest(&self) -> std::ops::Range<usize> {
+        self.position..self.bytes.len()
+    }
+
+    pub fn remaining(&self) -> usize {
+        self.bytes.len() - self.position
+    }
+
+    /// A fault at this place.
+    pub fn broken(&self, reason: impl Into<String>) -> Fault {
+        Fault::Broken { section: self.section, offset: self.position, reason: reason.into() }
+    }
+
+    /// The next `count` bytes, without a copy.
+    pub fn take(&mut self, count: usize) -> Result<&'a [u8]> {
+        let rest = &self.bytes[self.position..];
+        let Some(taken) = rest.get(..count) else {
+            return Err(self.broken(format!(
+                "{count} bytes expected where {} are left; the file is cut short or damaged, \
+                 export or copy it again",
+                rest.len()
+            )));
+        };
+        self.position += count;
+        Ok(taken)
+    }
+
+    fn array<const N: usize>(&mut self) -> Result<[u8; N]> {
+        let mut array = [0; N];
+        array.copy_from_slice(self.take(N)?);
+        Ok(array)
+    }
+
+    pub fn u8(&mut self) -> Result<u8> {
+        self.array().map(u8::from_le_bytes)
+    }
+
+    pub fn u32(&mut self) -> Result<u32> {
+        self.array().map(u32::from_le_bytes)
+    }
+
+    pub fn i32(&mut self) -> Result<i32> {
+        self.array().map(i32::from_le_bytes)
+    }
+
+    pub fn i64(&mut self) -> Result<i64> {
+        self.array().map(i64::from_le_bytes)
+    }
+
+    pub fn f64(&mut self) -> Result<f64> {
+        self.array().map(f64::from_le_bytes)
+    }
+
+    /// A count that is stored in 32 bits, each item of which takes at least `item_bytes`.
+    pub fn count(&mut self, item_bytes: usize) -> Result<usize> {
+        let count = self.u32()? as usize;
+        if count.saturating_mul(item_bytes) > self.remaining() {
+            return Err(self.broken(format!(
+                "{count} items announced where {} bytes are left; the file is damaged, export or \
+                 copy it again",
+                self.remaining()
+            )));
+        }
+        Ok(count)
+    }
+
+    /// A text with its length before it; what is not UTF-8 is replaced.
+    pub fn text(&mut self) -> Result<String> {
+        let length = self.count(1)?;
+        Ok(String::from_utf8_lossy(self.take(length)?).into_owned())
+    }
+}

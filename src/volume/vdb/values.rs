@@ -1,0 +1,234 @@
+//! The value buffer of a node: found without unpacking, then decoded into voxels.
+//!
+//! With mask compression only active values are stored; a code tells which one or two values the
+//! inactive ones have.
+
+use half::f16;
+
+use super::compression::{Buffer, Codec, Compression};
+use super::stream::{Result, Stream};
+use crate::volume::grid::Voxel;
+
+/// How a component is stored.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Scalar {
+    F32,
+    F64,
+    /// Some other type that is stepped over, never decoded.
+    Opaque {
+        bytes: usize,
+    },
+}
+
+/// How the values of a tree are stored.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Layout {
+    pub scalar: Scalar,
+    pub components: usize,
+    /// Buffers hold half floats; backgrounds, tiles at the root and inactive values do not.
+    pub half: bool,
+    pub compression: Compression,
+    /// Whether nodes are compressed by their masks (since version 222).
+    pub node_masks: bool,
+}
+
+impl Layout {
+    /// Size of a value outside buffers.
+    pub fn value_bytes(&self) -> usize {
+        self.components
+            * match self.scalar {
+                Scalar::F32 => 4,
+                Scalar::F64 => 8,
+                Scalar::Opaque { bytes } => bytes,
+            }
+    }
+
+    fn is_half(&self) -> bool {
+        self.half && !matches!(self.scalar, Scalar::Opaque { .. })
+    }
+
+    fn buffer<'a>(&self, stream: &mut Stream<'a>, count: usize) -> Result<Buffer<'a>> {
+        match (self.is_half(), count) {
+            // Empty buffers of half floats are not written at all, those of others are.
+            (true, 0) => Ok(Buffer::EMPTY),
+            (true, _) => self.compression.buffer(stream, count * self.components * 2),
+            (false, _) => self.compression.buffer(stream, count * self.value_bytes()),
+        }
+    }
+
+    /// The value that starts `bytes`, which has [`Layout::value_bytes`].
+    pub fn value<V: Voxel>(&self, bytes: &[u8]) -> V {
+        let mut value = [V::ZERO];
+        match self.scalar {
+            Scalar::F64 => decode(bytes, &mut value, |bytes| f64::from_le_bytes(bytes) as f32),
+            _ => decode(bytes, &mut value, f32::from_le_bytes),
+        }
+        value[0]
+    }
+
+    fn decode_buffer<V: Voxel>(&self, bytes: &[u8], values: &mut [V]) {
+        match (self.is_half(), self.scalar) {
+            (true, _) => decode(bytes, values, |bytes| f16::from_le_bytes(bytes).to_f32()),
+            (false, Scalar::F64) => decode(bytes, values, |bytes| f64::from_le_bytes(bytes) as f32),
+            (false, _) => decode(bytes, values, f32::from_le_bytes),
+        }
+    }
+}
+
+fn decode<V: Voxel, const N: usize>(
+    bytes: &[u8],
+    values: &mut [V],
+    scalar: impl Fn([u8; N]) -> f32,
+) {
+    let (scalars, _) = bytes.as_chunks::<N>();
+    for (value, scalars) in values.iter_mut().zip(scalars.chunks_exact(V::COMPONENTS)) {
+        let mut components = [0.0; 3];
+        for (component, &bytes) in components.iter_mut().zip(scalars) {
+            *component = scalar(bytes);
+        }
+        *value = V::from_components(components);
+    }
+}
+
+/// A set of bits, the lowest of each byte first.
+#[derive(Clone, Copy)]
+pub(super) struct Mask<'a>(&'a [u8]);
+
+impl<'a> Mask<'a> {
+    pub fn read(stream: &mut Stream<'a>, bits: usize) -> Result<Self> {
+        stream.take(bits / 8).map(Self)
+    }
+
+    pub fn is_on(&self, bit: usize) -> bool {
+        self.0[bit >> 3] >> (bit & 7) & 1 == 1
+    }
+
+    pub fn count(&self) -> usize {
+        self.words().map(|word| word.count_ones() as usize).sum()
+    }
+
+    /// The bits in words of 64; masks are whole words.
+    pub fn words(&self) -> impl Iterator<Item = u64> {
+        self.0.as_chunks().0.iter().map(|&bytes| u64::from_le_bytes(bytes))
+    }
+}
+
+/// What the inactive values are.
+#[derive(Clone, Copy)]
+enum Inactive<'a> {
+    Background,
+    MinusBackground,
+    One(&'a [u8]),
+    /// By a mask: minus the background where off, the background where on.
+    Signs(Mask<'a>),
+    /// By a mask: this one where off, the background where on.
+    OneOrBackground(&'a [u8], Mask<'a>),
+    /// By a mask: the first where off, the second where on.
+    Two(&'a [u8], &'a [u8], Mask<'a>),
+    /// All values are stored.
+    Stored,
+}
+
+impl<'a> Inactive<'a> {
+    fn read(stream: &mut Stream<'a>, layout: &Layout, bits: usize) -> Result<Self> {
+        let size = layout.value_bytes();
+        Ok(match stream.u8()? {
+            0 => Self::Background,
+            1 => Self::MinusBackground,
+            2 => Self::One(stream.take(size)?),
+            3 => Self::Signs(Mask::read(stream, bits)?),
+            4 => Self::OneOrBackground(stream.take(size)?, Mask::read(stream, bits)?),
+            5 => Self::Two(stream.take(size)?, stream.take(size)?, Mask::read(stream, bits)?),
+            6 => Self::Stored,
+            code => {
+                let reason = format!(
+                    "unknown code {code} for inactive values; the file is damaged, export or copy \
+                     it again"
+                );
+                return Err(stream.broken(reason));
+            }
+        })
+    }
+}
+
+/// Where the values of a node are and how to decode them.
+#[derive(Clone, Copy)]
+pub(super) struct PackedValues<'a> {
+    inactive: Inactive<'a>,
+    buffer: Buffer<'a>,
+    /// How many values are stored.
+    stored: usize,
+    /// Whether they are those of the active places only.
+    masked: bool,
+    /// Where the buffer ends, for messages.
+    end: usize,
+}
+
+impl<'a> PackedValues<'a> {
+    /// Finds the values of a node with as many places as `active` has bits: `count` of them are
+    /// stored before version 222, and since then all or the active ones.
+    pub fn read(
+        stream: &mut Stream<'a>,
+        layout: &Layout,
+        active: &Mask<'a>,
+        count: usize,
+    ) -> Result<Self> {
+        let inactive = match layout.node_masks {
+            true => Inactive::read(stream, layout, active.0.len() * 8)?,
+            false => Inactive::Stored,
+        };
+        let all = matches!(inactive, Inactive::Stored) || !layout.compression.has_active_mask();
+        let stored = if all { count } else { active.count() };
+        let buffer = layout.buffer(stream, stored)?;
+        Ok(Self { inactive, buffer, stored, masked: !all, end: stream.position() })
+    }
+
+    /// Decodes the values into `values`, which has a place for each bit of `active`; before
+    /// version 222 only the first ones may be set.
+    pub fn decode<V: Voxel>(
+        &self,
+        layout: &Layout,
+        active: &Mask,
+        background: V,
+        codec: &mut Codec,
+        values: &mut [V],
+    ) -> Result<()> {
+        let bytes = codec.unpack(&self.buffer).map_err(|reason| super::stream::Fault::Broken {
+            section: "values",
+            offset: self.end,
+            reason,
+        })?;
+        layout.decode_buffer(bytes, &mut values[..self.stored]);
+        if self.masked {
+            self.spread(layout, active, background, values);
+        }
+        Ok(())
+    }
+
+    /// Moves the stored values to their places and fills in the inactive ones, from the end so
+    /// that nothing is overwritten before it moved.
+    fn spread<V: Voxel>(&self, layout: &Layout, active: &Mask, background: V, values: &mut [V]) {
+        // Past zero by as much again: a negation that needs no operator of its own.
+        let minus = V::lerp(background, V::ZERO, 2.0);
+        let value = |bytes: &[u8]| layout.value::<V>(bytes);
+        let (off, on, mask) = match self.inactive {
+            Inactive::Background | Inactive::Stored => (background, background, None),
+            Inactive::MinusBackground => (minus, minus, None),
+            Inactive::One(bytes) => (value(bytes), background, None),
+            Inactive::Signs(mask) => (minus, background, Some(mask)),
+            Inactive::OneOrBackground(bytes, mask) => (value(bytes), background, Some(mask)),
+            Inactive::Two(first, second, mask) => (value(first), value(second), Some(mask)),
+        };
+        let mut next = self.stored;
+        for place in (0..values.len()).rev() {
+            values[place] = if active.is_on(place) {
+                next -= 1;
+                values[next]
+            } else if mask.is_some_and(|mask| mask.is_on(place)) {
+                on
+            } else {
+                off
+            };
+        }
+    }
+}
