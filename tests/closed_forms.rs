@@ -2,7 +2,9 @@
 
 mod common;
 
-use common::{Estimate, Verdicts, all_strategies, build, measure, measure_with, name, with_strategy};
+use common::{
+    Estimate, Verdicts, all_strategies, build, measure, measure_with, name, with_strategy,
+};
 use flambeau::math::Rgb;
 
 /// A camera at z = −1 looking along +z at what lies above z = 0.

@@ -100,8 +100,7 @@ fn emissivity_in_every_combination_of_toggles() {
 fn half_spaces() {
     let mut verdicts = Verdicts::default();
     for (albedo, expected) in [(0.9, 0.585_053), (0.99, 0.247_279)] {
-        let scene =
-            build(&slab(0.0, albedo, 200.0, r#"emission = { mode = "source", le = 1.0 }"#));
+        let scene = build(&slab(0.0, albedo, 200.0, r#"emission = { mode = "source", le = 1.0 }"#));
         for preset in [Preset::Baseline, Preset::Full] {
             let scene = with_strategy(&scene, preset.strategy());
             let label = format!("half space of albedo {albedo}, {preset}");

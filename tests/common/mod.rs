@@ -89,13 +89,8 @@ pub fn name(strategy: &Strategy) -> String {
 const SIDE: u32 = 64;
 
 /// The mean over the whole film of what `of` takes from each path.
-pub fn measure_with(
-    scene: &Scene,
-    paths: u32,
-    of: impl Fn(&PathSample) -> Rgb + Sync,
-) -> Estimate {
-    let frame =
-        Frame { scene: Arc::new(scene.clone()), size: UVec2::splat(SIDE), seed: seed() };
+pub fn measure_with(scene: &Scene, paths: u32, of: impl Fn(&PathSample) -> Rgb + Sync) -> Estimate {
+    let frame = Frame { scene: Arc::new(scene.clone()), size: UVec2::splat(SIDE), seed: seed() };
     let samples = paths.div_ceil(SIDE * SIDE);
     let rows: Vec<[[f64; 3]; 2]> = (0..SIDE)
         .into_par_iter()
