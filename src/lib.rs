@@ -1,5 +1,6 @@
 //! Flambeau: interactive, progressive preview of fire, smoke, fog and cloud.
 
+pub mod cli;
 pub mod error;
 pub mod image;
 pub mod light;
