@@ -86,8 +86,18 @@ fn npy(path: &Path) -> (Vec<u64>, Vec<f32>) {
 fn render_writes_every_format_and_the_figures() {
     let place = Place::new();
     place.succeed(&[
-        "render", "scene.toml", "-o", "out.exr", "-o", "out.png", "-o", "out.npy", "--stats",
-        "stats.json", "--threads", "2",
+        "render",
+        "scene.toml",
+        "-o",
+        "out.exr",
+        "-o",
+        "out.png",
+        "-o",
+        "out.npy",
+        "--stats",
+        "stats.json",
+        "--threads",
+        "2",
     ]);
     let (shape, values) = npy(&place.path("out.npy"));
     assert_eq!(shape, [30, 40, 3]);
@@ -98,9 +108,22 @@ fn render_writes_every_format_and_the_figures() {
     let stats = json(&place.path("stats.json"));
     let keys: Vec<&str> = stats.as_object().unwrap().keys().map(String::as_str).collect();
     let mut expected = vec![
-        "spp", "width", "height", "seed", "threads", "wall_seconds", "cpu_seconds_total",
-        "cpu_seconds_setup", "cpu_seconds_render", "mean_rgb", "gray_variance_of_mean",
-        "mean_relative_variance", "paths", "tracking_steps", "non_finite_samples", "strategy",
+        "spp",
+        "width",
+        "height",
+        "seed",
+        "threads",
+        "wall_seconds",
+        "cpu_seconds_total",
+        "cpu_seconds_setup",
+        "cpu_seconds_render",
+        "mean_rgb",
+        "gray_variance_of_mean",
+        "mean_relative_variance",
+        "paths",
+        "tracking_steps",
+        "non_finite_samples",
+        "strategy",
         "version",
     ];
     let mut found = keys.clone();
@@ -130,9 +153,24 @@ fn render_writes_every_format_and_the_figures() {
 fn the_command_line_overrides_the_scene() {
     let place = Place::new();
     place.succeed(&[
-        "render", "scene.toml", "-o", "out.exr", "--size", "17x9", "--seed", "5", "--spp", "2",
-        "--preset", "baseline", "--set", "strategy.majorant_boost=true", "--set",
-        "volume.0.density.scale=0.5", "--stats", "stats.json",
+        "render",
+        "scene.toml",
+        "-o",
+        "out.exr",
+        "--size",
+        "17x9",
+        "--seed",
+        "5",
+        "--spp",
+        "2",
+        "--preset",
+        "baseline",
+        "--set",
+        "strategy.majorant_boost=true",
+        "--set",
+        "volume.0.density.scale=0.5",
+        "--stats",
+        "stats.json",
     ]);
     let stats = json(&place.path("stats.json"));
     assert_eq!((&stats["width"], &stats["height"]), (&17.into(), &9.into()));
@@ -154,7 +192,16 @@ fn the_command_line_overrides_the_scene() {
 fn the_number_of_threads_changes_nothing() {
     let place = Place::new();
     let render = |threads: &str| {
-        place.succeed(&["render", "scene.toml", "-o", "out.exr", "--spp", "5", "--threads", threads]);
+        place.succeed(&[
+            "render",
+            "scene.toml",
+            "-o",
+            "out.exr",
+            "--spp",
+            "5",
+            "--threads",
+            threads,
+        ]);
         read_snapshot(&place.path("out.exr")).unwrap().film
     };
     let one = render("1");
@@ -168,8 +215,18 @@ fn a_resumed_render_is_the_uninterrupted_one() {
     place.succeed(&["render", "scene.toml", "-o", "half.exr", "--spp", "5"]);
     place.succeed(&["render", "scene.toml", "-o", "all.exr", "--spp", "13"]);
     place.succeed(&[
-        "render", "scene.toml", "--resume", "half.exr", "-o", "resumed.exr", "-o", "resumed.npy",
-        "--spp", "13", "--stats", "stats.json",
+        "render",
+        "scene.toml",
+        "--resume",
+        "half.exr",
+        "-o",
+        "resumed.exr",
+        "-o",
+        "resumed.npy",
+        "--spp",
+        "13",
+        "--stats",
+        "stats.json",
     ]);
     let snapshot = |name: &str| read_snapshot(&place.path(name)).unwrap();
     assert_eq!(snapshot("resumed.exr").film, snapshot("all.exr").film);
@@ -178,13 +235,27 @@ fn a_resumed_render_is_the_uninterrupted_one() {
     assert!(resumed.cpu_seconds_render > half.cpu_seconds_render);
 
     let (code, _, stderr) = place.run(&[
-        "render", "scene.toml", "--resume", "half.exr", "-o", "x.exr", "--set",
+        "render",
+        "scene.toml",
+        "--resume",
+        "half.exr",
+        "-o",
+        "x.exr",
+        "--set",
         "volume.0.albedo=0.7",
     ]);
     assert_eq!(code, 1);
     assert!(stderr.contains("albedo = 0.6") && stderr.contains("albedo = 0.7"), "{stderr}");
-    let (code, _, stderr) =
-        place.run(&["render", "scene.toml", "--resume", "half.exr", "-o", "x.exr", "--size", "8x8"]);
+    let (code, _, stderr) = place.run(&[
+        "render",
+        "scene.toml",
+        "--resume",
+        "half.exr",
+        "-o",
+        "x.exr",
+        "--size",
+        "8x8",
+    ]);
     assert_eq!(code, 1);
     assert!(stderr.contains("size"), "{stderr}");
     assert!(!place.path("x.exr").exists());

@@ -9,8 +9,8 @@ use serde::Serialize;
 use super::{Exit, Refusal, print};
 use crate::error::{NO_PROGRESS, Result};
 use crate::image::exr::{Info, read_info};
-use crate::scene::{self, Settings, VolumeCache};
 use crate::scene::settings::VolumeSettings;
+use crate::scene::{self, Settings, VolumeCache};
 use crate::volume::grid::{GridStats, IndexBox};
 use crate::volume::vdb::{Directory, GridInfo, VdbValues};
 

@@ -59,16 +59,17 @@ fn parse_seconds(text: &str) -> Result<f64, String> {
 
 pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
     let start = Instant::now();
-    let mut settings = arguments.scene.settings()?;
+    let interrupt = listen_for_interrupt()?;
+    let go_on = |_: f32| !interrupt.load(Ordering::Relaxed);
+    let cache = VolumeCache::default();
+    let mut settings = arguments.scene.settings(&cache, &go_on)?;
     let limits = limits(arguments, &mut settings);
     check_folders(arguments)?;
     let resumed = match &arguments.resume {
         Some(path) => Some(resume(path, &settings)?),
         None => None,
     };
-    let interrupt = listen_for_interrupt()?;
-    let cache = VolumeCache::default();
-    let scene = scene::build(&settings, &cache, &|_| !interrupt.load(Ordering::Relaxed))?;
+    let scene = scene::build(&settings, &cache, &go_on)?;
     let cpu_setup = process_seconds();
 
     let (film, before) = match resumed {

@@ -32,14 +32,15 @@ fn parse_pixel(text: &str) -> Result<UVec2, String> {
 }
 
 pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
-    let settings = arguments.scene.settings()?;
+    let cache = VolumeCache::default();
+    let settings = arguments.scene.settings(&cache, NO_PROGRESS)?;
     let size = UVec2::from_array(settings.film.size);
     let pixel = arguments.pixel;
     if pixel.x >= size.x || pixel.y >= size.y {
         let reason = format!("{},{} is off the film of {} x {}", pixel.x, pixel.y, size.x, size.y);
         return Err(Refusal::usage(Error::invalid("", "--pixel", reason)));
     }
-    let scene = scene::build(&settings, &VolumeCache::default(), NO_PROGRESS)?;
+    let scene = scene::build(&settings, &cache, NO_PROGRESS)?;
     let frame = Frame { scene: Arc::new(scene), size, seed: settings.film.seed };
     let mut log = Log::default();
     let sample = frame.trace(pixel, arguments.sample, &mut log);

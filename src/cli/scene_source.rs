@@ -4,8 +4,8 @@ use clap::Args;
 use glam::UVec2;
 
 use super::Refusal;
-use crate::error::Result;
-use crate::scene::{self, Overrides, Settings};
+use crate::error::{Progress, Result};
+use crate::scene::{self, Overrides, Settings, VolumeCache};
 use crate::transport::strategy::Preset;
 
 /// Arguments that name a scene and change it.
@@ -29,12 +29,15 @@ pub struct SceneArguments {
 }
 
 impl SceneArguments {
-    /// The settings as the commands see them. Mistakes on the command line are wrong usage,
-    /// mistakes in files are failures.
-    pub fn settings(&self) -> Result<Settings, Refusal> {
-        let settings = scene::load(&self.scene)?;
+    /// The settings as the commands see them. What was guessed for a bare volume is said on
+    /// standard error. Mistakes on the command line are wrong usage, mistakes in files failures.
+    pub fn settings(&self, cache: &VolumeCache, progress: Progress) -> Result<Settings, Refusal> {
+        let opened = scene::open(&self.scene, &Overrides::default(), cache, progress)?;
+        for note in &opened.notes {
+            eprintln!("flambeau: {note}");
+        }
         let overrides = Overrides { preset: self.preset, set: self.set.clone() };
-        let mut settings = scene::apply(&settings, &overrides).map_err(Refusal::usage)?;
+        let mut settings = scene::apply(&opened.settings, &overrides).map_err(Refusal::usage)?;
         if let Some(size) = self.size {
             settings.film.size = size.to_array();
         }
@@ -46,7 +49,8 @@ impl SceneArguments {
 }
 
 fn parse_size(text: &str) -> Result<UVec2, String> {
-    let sides = text.split_once(['x', 'X']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+    let sides =
+        text.split_once(['x', 'X']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
     match sides {
         Some((width, height)) if (1..=16384).contains(&width) && (1..=16384).contains(&height) => {
             Ok(UVec2::new(width, height))
