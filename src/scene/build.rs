@@ -5,8 +5,6 @@ mod source;
 mod surfaces;
 mod volumes;
 
-use std::sync::Arc;
-
 use glam::Vec3A;
 
 use super::{VolumeCache, settings::Settings};

@@ -33,7 +33,8 @@ pub fn volume(file: &str) -> Result<Option<&'static [u8]>> {
         Some((_, bytes)) => Ok(Some(bytes)),
         None => {
             let known: Vec<String> = VOLUMES.iter().map(|(n, _)| format!("{BUILTIN}{n}")).collect();
-            let reason = format!("there is no such embedded volume; there are {}", known.join(", "));
+            let reason =
+                format!("there is no such embedded volume; there are {}", known.join(", "));
             Err(Error::invalid(file, "", reason))
         }
     }

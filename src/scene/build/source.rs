@@ -126,9 +126,7 @@ impl ShapeSource {
                 let radius = settings.radius();
                 (Region::Sphere { radius }, ScalarField::Constant(1.0), Vec3A::splat(radius))
             }
-            VolumeShape::Everywhere => {
-                (Region::Everywhere, ScalarField::Constant(1.0), Vec3A::ONE)
-            }
+            VolumeShape::Everywhere => (Region::Everywhere, ScalarField::Constant(1.0), Vec3A::ONE),
             VolumeShape::Ramp => {
                 let axis = settings.axis().index();
                 let mut cell_size = bounds.size();

@@ -85,9 +85,11 @@ pub(super) fn light(settings: &LightSettings) -> Built {
             let sphere = Shape::Sphere(Sphere { center, radius: settings.radius() });
             emitter(sphere, brightness, settings.visible)
         }
-        LightKind::Quad => {
-            emitter(quad(center, settings.half_u(), settings.half_v()), brightness, settings.visible)
-        }
+        LightKind::Quad => emitter(
+            quad(center, settings.half_u(), settings.half_v()),
+            brightness,
+            settings.visible,
+        ),
     }
 }
 

@@ -109,9 +109,7 @@ fn from_shape(shape: ShapeSource, settings: &VolumeSettings, key: &str) -> Resul
     let is_constant = matches!(shape.field, ScalarField::Constant(_));
     let substance = substance(&mut Source::Shape(shape), settings, key)?;
     Ok(match region {
-        Region::Box(bounds) if !is_constant => {
-            Volume::varying(bounds, substance, cell_size, None)
-        }
+        Region::Box(bounds) if !is_constant => Volume::varying(bounds, substance, cell_size, None),
         region => Volume::uniform(region, substance),
     })
 }
@@ -146,10 +144,9 @@ fn emission(source: &mut Source, settings: &VolumeSettings, key: &str) -> Result
             field: source.rgb(grid, key)?,
             scale: emission.scale() * emission.color().rgb(),
         },
-        EmissionMode::Constant => Emission::Field {
-            field: RgbField::Constant(emission.value().rgb()),
-            scale: Rgb::ONE,
-        },
+        EmissionMode::Constant => {
+            Emission::Field { field: RgbField::Constant(emission.value().rgb()), scale: Rgb::ONE }
+        }
         EmissionMode::Source => Emission::Source { le: emission.le().rgb() },
         EmissionMode::Blackbody => Emission::Blackbody(Blackbody {
             field: source.scalar(grid, key)?,
@@ -164,7 +161,11 @@ fn emission(source: &mut Source, settings: &VolumeSettings, key: &str) -> Result
         }),
         EmissionMode::Ramp => Emission::Ramp(ColorRamp {
             field: source.scalar(grid, key)?,
-            stops: emission.stops().iter().map(|&[value, r, g, b]| (value, Rgb::new(r, g, b))).collect(),
+            stops: emission
+                .stops()
+                .iter()
+                .map(|&[value, r, g, b]| (value, Rgb::new(r, g, b)))
+                .collect(),
             intensity: Rgb::splat(emission.intensity()),
             times_density: emission.times_density(),
         }),
