@@ -1,3 +1,5 @@
-fn main() {
-    if let Err(e) = flambeau::app::run(std::env::args().nth(1)) { eprintln!("{e}"); std::process::exit(1); }
+//! The program: everything is in the library.
+
+fn main() -> std::process::ExitCode {
+    flambeau::cli::run()
 }

@@ -74,7 +74,7 @@ fn the_same_film_for_any_number_of_threads() {
     assert_eq!(one.film.sample_range(), (21, 21));
     for threads in [2, 4] {
         let many = render(&Counting::new(u64::MAX), 21, threads, None);
-        assert_eq!(many.threads, threads);
+        assert_eq!(many.pool.threads(), threads);
         assert_eq!(many.film, one.film, "{threads} threads");
     }
 }
@@ -126,7 +126,7 @@ fn a_film_of_another_size_is_refused() {
         resume: Some(Film::new(UVec2::new(3, 4)).unwrap()),
         threads: Some(1),
     };
-    let error = render_headless(job, &AtomicBool::new(false), &mut |_, _| {}).unwrap_err();
+    let error = render_headless(job, &AtomicBool::new(false), &mut |_, _| {}).err().unwrap();
     let text = error.to_string();
     assert!(text.contains("3 x 4") && text.contains("75 x 50"), "{text}");
 }

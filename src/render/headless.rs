@@ -27,12 +27,11 @@ pub struct Job {
 }
 
 /// What a render came to.
-#[derive(Debug)]
 pub struct Headless {
     /// The film, consistent however the render ended.
     pub film: Film,
-    /// Number of threads at work.
-    pub threads: usize,
+    /// The threads that rendered it.
+    pub pool: Pool,
     /// Seconds of rendering.
     pub seconds: f64,
     /// Whether the interrupt ended it.
@@ -75,7 +74,7 @@ pub fn render_headless(
     };
     let seconds = engine.seconds();
     let (film, _) = engine.into_parts();
-    Ok(Headless { film, threads: pool.threads(), seconds, interrupted, failure })
+    Ok(Headless { film, pool, seconds, interrupted, failure })
 }
 
 /// `film`, if it has the wanted size.

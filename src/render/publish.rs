@@ -69,16 +69,23 @@ pub fn resolve(film: &Film, pixels: &mut Vec<[f32; 4]>) -> Option<f64> {
 
 fn resolve_line(film: &Film, y: u32, line: &mut [[f32; 4]]) -> Spread {
     let mut spread = Spread::default();
+    // Neighbors that show the same block are read once.
+    let mut last = (UVec2::MAX, [0.0; 4]);
     for (x, out) in line.iter_mut().enumerate() {
         let pixel = UVec2::new(x as u32, y);
         let shown = shown_pixel(film, pixel);
-        *out = PixelEstimate::of(film, shown).map_or([0.0; 4], |estimate| {
-            let mean = estimate.mean();
-            if shown == pixel {
-                spread.add(&Spread::with_mean(&estimate, mean));
+        if shown != last.0 {
+            last = (shown, [0.0; 4]);
+            if let Some(estimate) = PixelEstimate::of(film, shown) {
+                let mean = estimate.mean();
+                if shown == pixel {
+                    spread.add(&Spread::with_mean(&estimate, mean));
+                }
+                let [r, g, b] = mean.map(|value| value as f32);
+                last.1 = [r, g, b, estimate.alpha() as f32];
             }
-            [mean[0] as f32, mean[1] as f32, mean[2] as f32, estimate.alpha() as f32]
-        });
+        }
+        *out = last.1;
     }
     spread
 }

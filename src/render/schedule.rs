@@ -22,8 +22,9 @@ const DEFAULT_STRIDE: u32 = 8;
 const PUBLISH_SECONDS: (f64, f64) = (0.1, 0.5);
 /// Time between pictures, as a share of the time rendered so far.
 const PUBLISH_GROWTH: f64 = 0.1;
-/// A picture waits until this many times its own cost has passed: 4 % of the time at most.
-const PUBLISH_COST_RATIO: f64 = 25.0;
+/// A picture waits until this many times its own cost has passed. In the first second quick news
+/// are worth up to a fifth of the time, later 4 % at most.
+const PUBLISH_COST_RATIO: (f64, f64) = (5.0, 25.0);
 /// The shortest piece of work worth sending to the threads, in seconds.
 const SHORTEST_WORK: f64 = 0.02;
 /// The most samples a pixel takes in one piece of work.
@@ -198,7 +199,9 @@ impl Schedule {
 
     fn publish_interval(&self, now: f64) -> f64 {
         let (shortest, longest) = PUBLISH_SECONDS;
-        (now * PUBLISH_GROWTH).clamp(shortest, longest).max(self.publish_cost * PUBLISH_COST_RATIO)
+        let (low, high) = PUBLISH_COST_RATIO;
+        let ratio = (now * high).clamp(low, high);
+        (now * PUBLISH_GROWTH).clamp(shortest, longest).max(self.publish_cost * ratio)
     }
 
     /// How long the next piece of work should take: until the next picture or the end.
@@ -400,6 +403,8 @@ mod tests {
         schedule.published(3.0, 0.001);
         assert!(!schedule.publish_due(3.2));
         assert!(schedule.publish_due(3.4));
+        schedule.published(0.5, 0.02);
+        assert!(!schedule.publish_due(0.7) && schedule.publish_due(0.9));
         schedule.published(100.0, 0.1);
         assert!(!schedule.publish_due(102.0), "a picture of 100 ms has to wait for 2.5 s");
         assert!(schedule.publish_due(102.6));
