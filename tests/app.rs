@@ -137,9 +137,8 @@ impl Window {
 
 /// A render state without a window; `None` with a message where there is no adapter.
 fn render_state() -> Option<egui_wgpu::RenderState> {
-    let create = || {
-        create_render_state(default_wgpu_setup(), egui_wgpu::RendererOptions::PREDICTABLE)
-    };
+    let create =
+        || create_render_state(default_wgpu_setup(), egui_wgpu::RendererOptions::PREDICTABLE);
     match std::panic::catch_unwind(create) {
         Ok(state) => Some(state),
         Err(_) if std::env::var_os("FLAMBEAU_REQUIRE_WINDOW_TESTS").is_some_and(|v| v == "1") => {

@@ -88,7 +88,9 @@ impl Command {
     /// What it does.
     pub fn tooltip(self) -> &'static str {
         match self {
-            C::Open => "Open a scene (.toml) or a volume (.vdb). Files can also be dropped on the window.",
+            C::Open => {
+                "Open a scene (.toml) or a volume (.vdb). Files can also be dropped on the window."
+            }
             C::OpenPath => "Type the path of a scene or a volume, or builtin:NAME.",
             C::SaveExr => "Save the picture as it is, linear and with its layers, as an EXR.",
             C::SavePng => "Save the picture as you see it, with exposure and tone curve, as a PNG.",

@@ -14,7 +14,7 @@ use crate::scene::Settings;
 use crate::scene::settings::FilmSettings;
 use crate::transport::{Frame, Scene};
 
-/// A build that takes longer than this gives way to the next edit.
+/// A build that takes longer than this gives way to the next edit, and shows how far it is.
 const PATIENCE: Duration = Duration::from_millis(250);
 
 /// What happened since the last frame.
@@ -28,8 +28,12 @@ pub enum News {
         /// What was guessed for a bare volume, one a line.
         notes: Vec<String>,
     },
-    /// A file could not be opened, or an edit could not be built.
+    /// A file could not be opened, or a sample could not be taken.
     Failed(String),
+    /// An edit could not be built.
+    Refused(String),
+    /// The settings were built.
+    Accepted,
     /// A render was started; the number is its generation.
     Started(u64),
 }
@@ -40,7 +44,7 @@ pub struct Engine {
     session: Session,
     built: Option<Built>,
     grids: Arc<Grids>,
-    opening: Option<String>,
+    opening: Option<(String, Instant)>,
     building: Option<(Settings, Instant)>,
     /// Settings that could not be built, so that they are not tried again in every frame.
     refused: Option<Settings>,
@@ -94,7 +98,7 @@ impl Engine {
     /// Opens a path or `builtin:NAME`; what is shown stays until that is built.
     pub fn open(&mut self, source: &str) {
         self.building = None;
-        self.opening = Some(source.to_owned());
+        self.opening = Some((source.to_owned(), Instant::now()));
         self.loader.request(Job::Open(source.to_owned()));
     }
 
@@ -109,13 +113,15 @@ impl Engine {
 
     /// What is being opened.
     pub fn opening(&self) -> Option<&str> {
-        self.opening.as_deref()
+        self.opening.as_ref().map(|(source, _)| source.as_str())
     }
 
     /// The fraction done of a load or build that takes long enough to mention.
     pub fn progress(&self) -> Option<f32> {
-        let long = self.building.as_ref().is_some_and(|(_, since)| since.elapsed() > PATIENCE);
-        if self.opening.is_some() || long { self.loader.progress() } else { None }
+        let opening = self.opening.as_ref().map(|(_, since)| since);
+        let building = self.building.as_ref().map(|(_, since)| since);
+        let since = opening.or(building)?;
+        if since.elapsed() > PATIENCE { self.loader.progress() } else { None }
     }
 
     /// The latest picture.
@@ -194,10 +200,13 @@ impl Engine {
                     self.opening = None;
                     news.push(News::Failed(error.to_string()));
                 }
-                (Job::Build(_), Ok(built)) => self.built = Some(built),
+                (Job::Build(_), Ok(built)) => {
+                    self.built = Some(built);
+                    news.push(News::Accepted);
+                }
                 (Job::Build(settings), Err(error)) => {
                     self.refused = Some(settings);
-                    news.push(News::Failed(error.to_string()));
+                    news.push(News::Refused(error.to_string()));
                 }
             }
         }
@@ -229,9 +238,8 @@ impl Engine {
     /// that each start of a fast series may show its first picture.
     fn start(&mut self, film: FilmKey, news: &mut Vec<News>) {
         let Some(built) = &self.built else { return };
-        let running = |started: &Started| {
-            Arc::ptr_eq(&started.scene, &built.scene) && started.film == film
-        };
+        let running =
+            |started: &Started| Arc::ptr_eq(&started.scene, &built.scene) && started.film == film;
         if self.started.as_ref().is_some_and(running) {
             return;
         }

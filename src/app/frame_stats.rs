@@ -61,7 +61,9 @@ impl FrameStats {
     pub fn shown(&mut self, generation: u64) {
         let opened = self.opened;
         self.first_picture.get_or_insert_with(|| opened.elapsed().as_secs_f64());
-        if let Some((_, since)) = self.edit.take_if(|(wanted, _)| wanted.is_some_and(|wanted| generation >= wanted)) {
+        if let Some((_, since)) =
+            self.edit.take_if(|(wanted, _)| wanted.is_some_and(|wanted| generation >= wanted))
+        {
             self.edits.push(milliseconds(since.elapsed()));
         }
     }

@@ -74,8 +74,11 @@ impl Pose {
 mod tests {
     use super::*;
 
-    const POSE: Pose =
-        Pose { position: Vec3::new(0.0, -6.0, 2.0), target: Vec3::new(0.3, 0.0, -0.3), up: Vec3::Z };
+    const POSE: Pose = Pose {
+        position: Vec3::new(0.0, -6.0, 2.0),
+        target: Vec3::new(0.3, 0.0, -0.3),
+        up: Vec3::Z,
+    };
 
     #[test]
     fn an_orbit_keeps_the_distance_and_stays_off_the_poles() {

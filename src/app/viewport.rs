@@ -90,9 +90,7 @@ impl Viewport {
     pub fn show(&mut self, ui: &mut Ui, editor: &mut Editor, picture: Option<&Arc<Picture>>) {
         let rect = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(rect, Sense::click_and_drag());
-        response.widget_info(|| {
-            egui::WidgetInfo::labeled(egui::Role::Image, true, "Picture")
-        });
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Picture"));
         let factor = ui.pixels_per_point();
         self.size = from_egui(rect.size()) * factor;
         self.pointer = response.hover_pos().map(|at| from_egui(at - rect.min) * factor);

@@ -57,12 +57,10 @@ pub fn row<R>(
 pub struct Number<'a> {
     /// What it is called, also for screen readers and undo.
     pub name: &'a str,
-    /// Its key in the scene file, which knows its help.
+    /// Its key in the scene file, which knows its help and what may be typed.
     pub key: &'a str,
     /// What the slider covers.
     pub soft: RangeInclusive<f32>,
-    /// What may be typed.
-    pub hard: RangeInclusive<f32>,
     /// Whether the slider goes by factors.
     pub logarithmic: bool,
     /// The unit behind the number, with a space before it.
@@ -81,9 +79,8 @@ impl Number<'_> {
             let slider = self.slider(ui, value).on_hover_text(&help).labelled_by(label.id);
             let field = self.field(ui, value).labelled_by(label.id);
             field.on_hover_text("Click to type, drag to change; with Shift more finely.");
-            let double = ui.input(|input| {
-                input.pointer.button_double_clicked(egui::PointerButton::Primary)
-            });
+            let double =
+                ui.input(|input| input.pointer.button_double_clicked(egui::PointerButton::Primary));
             if double && (label.contains_pointer() || slider.contains_pointer()) {
                 *value = self.reset;
             }
@@ -112,14 +109,22 @@ impl Number<'_> {
         } else {
             span / 300.0
         };
+        let [low, high] = keys::find(self.key).map_or([f64::MIN, f64::MAX], |key| key.limits);
         let field = DragValue::new(value)
             .speed(speed)
-            .range(self.hard.clone())
+            .range(low..=high)
             .max_decimals(4)
             .suffix(self.unit)
-            .custom_formatter(|value, _| significant(value));
+            .custom_formatter(|value, _| significant(value))
+            .custom_parser(finite);
         ui.add_sized([space::NUMBER, space::ROW_HEIGHT], field)
     }
+}
+
+/// A typed number; nothing where it is none, or none to calculate with.
+pub fn finite(text: &str) -> Option<f64> {
+    let digits = text.split_whitespace().collect::<String>().replace('\u{2212}', "-");
+    digits.parse().ok().filter(|value: &f64| value.abs() <= f64::from(f32::MAX))
 }
 
 /// A number in four significant digits, without trailing zeros.
@@ -158,7 +163,8 @@ pub fn vector(ui: &mut Ui, name: &str, key: &str, value: &mut [f32; 3], speed: f
             let field = DragValue::new(component)
                 .speed(speed)
                 .max_decimals(4)
-                .custom_formatter(|value, _| significant(value));
+                .custom_formatter(|value, _| significant(value))
+                .custom_parser(finite);
             ui.add_sized([width, space::ROW_HEIGHT], field)
                 .accessible_name(format!("{name} {axis}"))
                 .on_hover_text(&help);
@@ -192,5 +198,6 @@ mod tests {
         assert_eq!(texts, ["0", "1", "12.5", "1500", "0.01235", "-0.5", "123456"]);
         assert_eq!(count(24_100_000.0), "24.1 M");
         assert_eq!(count(12.0), "12");
+        assert_eq!(["1 500", "nan", "inf", "x"].map(finite), [Some(1500.0), None, None, None]);
     }
 }

@@ -58,11 +58,7 @@ impl App {
     ///
     /// # Errors
     /// When the system refuses to start threads.
-    pub fn new(
-        ctx: &Context,
-        state: &egui_wgpu::RenderState,
-        options: Options,
-    ) -> Result<Self> {
+    pub fn new(ctx: &Context, state: &egui_wgpu::RenderState, options: Options) -> Result<Self> {
         let stats = FrameStats::from_env();
         theme::apply(ctx);
         display::install(state);
@@ -140,12 +136,14 @@ impl App {
                     self.notes = notes;
                     self.editor.open(settings);
                     self.viewport.zoom = Default::default();
-                    self.notices.clear(Level::Failed);
+                    self.notices = Notices::default();
                     self.source = source;
                     let title = format!("{} – Flambeau", self.title());
                     ctx.send_viewport_cmd(egui::ViewportCommand::Title(title));
                 }
                 News::Failed(text) => self.notices.failed(text),
+                News::Refused(text) => self.notices.refused(text),
+                News::Accepted => self.notices.clear(Level::Refused),
                 News::Started(generation) => {
                     if let Some(stats) = &mut self.stats {
                         stats.started(generation);
@@ -189,7 +187,8 @@ impl App {
     fn layout(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let title = self.title();
         let grids = self.engine.grids().clone();
-        let mut panel = Panel { editor: &mut self.editor, grids: &grids, notes: &self.notes, commands };
+        let mut panel =
+            Panel { editor: &mut self.editor, grids: &grids, notes: &self.notes, commands };
         let bar = Frame::new().fill(color::PANEL).inner_margin(Margin::symmetric(8, 3));
         egui::Panel::top("menu").frame(bar).show(ui, |ui| {
             panels::menu::show(ui, &mut panel, &title);
@@ -402,8 +401,7 @@ impl App {
             }
             other => {
                 let Some(toggle) = panels::strategy::toggle_of(other) else { return };
-                let switch =
-                    panels::strategy::switch(&mut document.settings.strategy, toggle);
+                let switch = panels::strategy::switch(&mut document.settings.strategy, toggle);
                 *switch = !*switch;
                 other.text()
             }

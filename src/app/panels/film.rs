@@ -5,7 +5,7 @@ use glam::UVec2;
 
 use super::{Panel, section};
 use crate::app::theme::space;
-use crate::app::widgets::{key_help, row, segments};
+use crate::app::widgets::{finite, key_help, row, segments};
 use crate::scene::settings::FilmSettings;
 
 /// Shows the section. `window` is the size that the film takes from the window, `largest` the
@@ -19,9 +19,8 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>, window: Option<UVec2>, largest: 
             ("Fixed", "The film keeps the size given here, as a render on the farm would."),
         ];
         let chosen = usize::from(document.keep_size);
-        let clicked = row(ui, "Size", &key_help("film.size"), |ui| {
-            segments(ui, &choices, Some(chosen))
-        });
+        let clicked =
+            row(ui, "Size", &key_help("film.size"), |ui| segments(ui, &choices, Some(chosen)));
         if let Some(choice) = clicked.inner {
             document.keep_size = choice == 1;
             edit = Some("film size");
@@ -53,7 +52,10 @@ fn fixed_size(ui: &mut Ui, film: &mut FilmSettings, largest: u32) -> bool {
     row(ui, "Pixels", &help, |ui| {
         let mut changed = false;
         for (side, name) in film.size.iter_mut().zip(["Film width", "Film height"]) {
-            let field = DragValue::new(side).range(1..=largest).update_while_editing(false);
+            let field = DragValue::new(side)
+                .range(1..=largest)
+                .custom_parser(finite)
+                .update_while_editing(false);
             let response = ui.add_sized([space::NUMBER, space::ROW_HEIGHT], field);
             changed |= response.accessible_name(name).on_hover_text(&help).changed();
         }
@@ -65,7 +67,8 @@ fn fixed_size(ui: &mut Ui, film: &mut FilmSettings, largest: u32) -> bool {
 fn whole(ui: &mut Ui, name: &str, key: &str, value: &mut u64, unit: &str) -> bool {
     let help = key_help(key);
     row(ui, name, &help, |ui| {
-        let field = DragValue::new(value).speed(0.1).suffix(unit).update_while_editing(false);
+        let field = DragValue::new(value).speed(0.1).suffix(unit);
+        let field = field.custom_parser(finite).update_while_editing(false);
         let field = ui.add_sized(vec2(space::NUMBER + 20.0, space::ROW_HEIGHT), field);
         field.accessible_name(name).on_hover_text(&help).changed()
     })

@@ -25,9 +25,13 @@ pub fn show(ctx: &Context, open: &mut bool) {
         .default_pos(ctx.content_rect().center())
         .show(ctx, |ui| {
             ui.horizontal_top(|ui| {
-                table(ui, "keys", Command::ALL.map(|command| {
-                    (ui.ctx().format_shortcut(&command.shortcut()), command.text().to_owned())
-                }));
+                table(
+                    ui,
+                    "keys",
+                    Command::ALL.map(|command| {
+                        (ui.ctx().format_shortcut(&command.shortcut()), command.text().to_owned())
+                    }),
+                );
                 ui.add_space(24.0);
                 table(ui, "mouse", MOUSE.map(|(hand, does)| (hand.to_owned(), does.to_owned())));
             });

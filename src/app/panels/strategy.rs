@@ -77,8 +77,10 @@ fn row_of(ui: &mut Ui, panel: &mut Panel<'_>, toggle: Toggle, command: Command, 
 
 fn presets(ui: &mut Ui, panel: &mut Panel<'_>) {
     // Presets that mean the same toggles show once, under the fuller name.
-    let distinct: Vec<Preset> =
-        Preset::ALL.into_iter().filter(|preset| preset.strategy().preset() == Some(*preset)).collect();
+    let distinct: Vec<Preset> = Preset::ALL
+        .into_iter()
+        .filter(|preset| preset.strategy().preset() == Some(*preset))
+        .collect();
     let choices: Vec<(String, String)> = distinct
         .iter()
         .map(|preset| {
@@ -95,9 +97,8 @@ fn presets(ui: &mut Ui, panel: &mut Panel<'_>) {
     let strategy = &mut panel.editor.document.settings.strategy;
     let present = strategy.preset();
     let chosen = distinct.iter().position(|preset| present == Some(*preset));
-    let clicked = row(ui, "Preset", &key_help("strategy.preset"), |ui| {
-        segments(ui, &choices, chosen)
-    });
+    let clicked =
+        row(ui, "Preset", &key_help("strategy.preset"), |ui| segments(ui, &choices, chosen));
     if let Some(preset) = clicked.inner.and_then(|index| distinct.get(index)) {
         *strategy = Strategy { advanced: strategy.advanced, ..preset.strategy() };
         panel.editor.name_edit(format!("preset {}", preset.name()));
@@ -106,9 +107,7 @@ fn presets(ui: &mut Ui, panel: &mut Panel<'_>) {
 
 fn capitalized(name: &str) -> String {
     let mut letters = name.chars();
-    letters.next().map_or_else(String::new, |first| {
-        first.to_uppercase().chain(letters).collect()
-    })
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 fn advanced(ui: &mut Ui, panel: &mut Panel<'_>) {
@@ -147,7 +146,6 @@ fn boost_amount(ui: &mut Ui, advanced: &mut Advanced, opened: Advanced) -> bool 
         name: "Boost amount",
         key: "strategy.advanced.boost_amount",
         soft: 0.0..=32.0,
-        hard: 0.0..=1000.0,
         logarithmic: true,
         unit: "",
         reset: opened.boost_amount,
@@ -160,7 +158,6 @@ fn boost_clamp(ui: &mut Ui, advanced: &mut Advanced, opened: Advanced) -> bool {
         name: "Boost clamp",
         key: "strategy.advanced.boost_clamp_voxels",
         soft: 0.1..=10.0,
-        hard: 0.01..=1000.0,
         logarithmic: true,
         unit: " vx",
         reset: opened.boost_clamp_voxels,

@@ -6,10 +6,10 @@ use super::{Panel, explain, section};
 use crate::app::theme::color;
 use crate::app::up_axis;
 use crate::app::widgets::{Number, count, key_help, row, segments, significant};
-use crate::scene::{GridDescription, Settings, VoxelDescription};
 use crate::scene::settings::{
     Albedo, Axis, Color, EmissionMode, EmissionSettings, Normalize, VolumeSettings,
 };
+use crate::scene::{GridDescription, Settings, VoxelDescription};
 
 /// Shows the section.
 pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
@@ -55,7 +55,8 @@ fn up_axis_row(ui: &mut Ui, settings: &mut Settings, index: usize) -> Option<&'s
     let present = settings.volume.get(index).and_then(up_axis::of);
     let chosen = axes.iter().position(|axis| Some(*axis) == present);
     let help = "Which way is up in the file: Houdini's files have y up, Blender's z.";
-    let clicked = row(ui, "Up axis", help, |ui| segments(ui, &[("Y up", help), ("Z up", help)], chosen));
+    let clicked =
+        row(ui, "Up axis", help, |ui| segments(ui, &[("Y up", help), ("Z up", help)], chosen));
     let axis = clicked.inner.and_then(|clicked| axes.get(clicked))?;
     up_axis::set(settings, index, *axis);
     Some("up axis")
@@ -140,7 +141,11 @@ fn grid_choice(
     .inner
 }
 
-fn medium(ui: &mut Ui, volume: &mut VolumeSettings, opened: &VolumeSettings) -> Option<&'static str> {
+fn medium(
+    ui: &mut Ui,
+    volume: &mut VolumeSettings,
+    opened: &VolumeSettings,
+) -> Option<&'static str> {
     let mut edit = None;
     let mut density = strength(volume.density.scale);
     let reset = strength(opened.density.scale);
@@ -149,7 +154,6 @@ fn medium(ui: &mut Ui, volume: &mut VolumeSettings, opened: &VolumeSettings) -> 
         name: "Density",
         key: "volume.N.density.scale",
         soft: 0.0..=around * 20.0,
-        hard: 0.0..=f32::MAX,
         logarithmic: true,
         unit: "",
         reset,
@@ -163,7 +167,6 @@ fn medium(ui: &mut Ui, volume: &mut VolumeSettings, opened: &VolumeSettings) -> 
         name: "Phase g",
         key: "volume.N.phase.g",
         soft: -0.95..=0.95,
-        hard: -0.999..=0.999,
         logarithmic: false,
         unit: "",
         reset: opened.phase.g,
@@ -174,7 +177,11 @@ fn medium(ui: &mut Ui, volume: &mut VolumeSettings, opened: &VolumeSettings) -> 
     edit
 }
 
-fn albedo(ui: &mut Ui, volume: &mut VolumeSettings, opened: &VolumeSettings) -> Option<&'static str> {
+fn albedo(
+    ui: &mut Ui,
+    volume: &mut VolumeSettings,
+    opened: &VolumeSettings,
+) -> Option<&'static str> {
     let as_color = |albedo: &Albedo| match albedo {
         Albedo::Gray(value) => Some(Color::Gray(*value)),
         Albedo::Rgb(rgb) => Some(Color::Rgb(*rgb)),
@@ -192,7 +199,6 @@ fn albedo(ui: &mut Ui, volume: &mut VolumeSettings, opened: &VolumeSettings) -> 
         name: "Albedo",
         key: "volume.N.albedo",
         soft: 0.0..=1.0,
-        hard: 0.0..=1.0,
         logarithmic: false,
         unit: "",
         reset: as_color(&opened.albedo).map_or(0.0, strength),
@@ -226,7 +232,12 @@ fn emission(
     if let (Some(present), false) = (volume.emission_grid().map(str::to_owned), grids.is_empty()) {
         let choice = (&mut volume.emission.grid, present);
         edit = edit.or(grid_choice(
-            ui, "Emission from", "volume.N.emission.grid", index, grids, choice,
+            ui,
+            "Emission from",
+            "volume.N.emission.grid",
+            index,
+            grids,
+            choice,
         ));
     }
     let (emission, opened) = (&mut volume.emission, &opened.emission);
@@ -284,7 +295,6 @@ fn blackbody(
         name: "Kelvin scale",
         key: "volume.N.emission.kelvin_scale",
         soft: 0.0..=(opened.kelvin_scale() * 4.0).max(1.0),
-        hard: 0.0..=f32::MAX,
         logarithmic: false,
         unit: " K",
         reset: opened.kelvin_scale(),
@@ -299,7 +309,6 @@ fn blackbody(
         name: "Kelvin offset",
         key: "volume.N.emission.kelvin_offset",
         soft: -reach..=reach,
-        hard: -f32::MAX..=f32::MAX,
         logarithmic: false,
         unit: "",
         reset: opened.kelvin_offset(),
@@ -346,7 +355,6 @@ fn factor(
         name,
         key: &format!("volume.N.emission.{key}"),
         soft: 0.0..=around * 20.0,
-        hard: 0.0..=f32::MAX,
         logarithmic: true,
         unit: "",
         reset,
