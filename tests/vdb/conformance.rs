@@ -148,7 +148,8 @@ fn check_values<V: Voxel>(wanted: &Value, grid: &SparseGrid<V>) {
         let got = grid.value(IVec3::from_array(ijk.map(|c| c as i32)));
         compare(got, &sample["value"], 1e-6, &format!("voxel {ijk:?}"));
     }
-    for sample in wanted["trilinear"].as_array().unwrap() {
+    // Vector grids have none.
+    for sample in wanted["trilinear"].as_array().into_iter().flatten() {
         let index: [f64; 3] = std::array::from_fn(|axis| sample["index"][axis].as_f64().unwrap());
         let got = grid.sample(index.map(|c| c as f32).into());
         compare(got, &sample["value"], 1e-4, &format!("position {index:?}"));
