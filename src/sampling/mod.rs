@@ -1,0 +1,4 @@
+//! Samplers, each with its density beside it, and the one place where MIS weights are made.
+
+pub mod mis;
+pub mod warp;

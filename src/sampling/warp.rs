@@ -1,0 +1,57 @@
+//! Directions on spheres, hemispheres and cones. Local directions are about +z.
+
+use std::f32::consts::{FRAC_1_PI, TAU};
+
+use glam::{Vec2, Vec3A};
+
+/// A unit vector from its cosine to +z and its azimuth.
+#[inline]
+pub fn spherical(cos_theta: f32, phi: f32) -> Vec3A {
+    let sin_theta = (1.0 - cos_theta * cos_theta).max(0.0).sqrt();
+    let (sin_phi, cos_phi) = phi.sin_cos();
+    Vec3A::new(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta)
+}
+
+/// A direction uniform over the sphere; its density is [`UNIFORM_SPHERE_PDF`].
+#[inline]
+pub fn uniform_sphere(u: Vec2) -> Vec3A {
+    spherical(1.0 - 2.0 * u.x, TAU * u.y)
+}
+
+/// Density of [`uniform_sphere`] over solid angle, 1/(4π).
+pub const UNIFORM_SPHERE_PDF: f32 = 0.25 * FRAC_1_PI;
+
+/// A direction on the upper hemisphere with density [`cosine_hemisphere_pdf`].
+#[inline]
+pub fn cosine_hemisphere(u: Vec2) -> Vec3A {
+    spherical((1.0 - u.x).sqrt(), TAU * u.y)
+}
+
+/// Density of [`cosine_hemisphere`] over solid angle, cos θ / π.
+#[inline]
+pub fn cosine_hemisphere_pdf(cos_theta: f32) -> f32 {
+    cos_theta.max(0.0) * FRAC_1_PI
+}
+
+/// A direction uniform over the cone about +z with `one_minus_cos` = 1 − cos of its half angle,
+/// given so because narrow cones would lose it to rounding.
+#[inline]
+pub fn uniform_cone(u: Vec2, one_minus_cos: f32) -> Vec3A {
+    let below = u.x * one_minus_cos;
+    let sin_theta = (below * (2.0 - below)).max(0.0).sqrt();
+    let (sin_phi, cos_phi) = (TAU * u.y).sin_cos();
+    Vec3A::new(sin_theta * cos_phi, sin_theta * sin_phi, 1.0 - below)
+}
+
+/// Density of [`uniform_cone`] over solid angle inside the cone.
+#[inline]
+pub fn uniform_cone_pdf(one_minus_cos: f32) -> f32 {
+    1.0 / (TAU * one_minus_cos)
+}
+
+/// A point uniform on the unit disk.
+#[inline]
+pub fn uniform_disk(u: Vec2) -> Vec2 {
+    let (sin_phi, cos_phi) = (TAU * u.y).sin_cos();
+    u.x.sqrt() * Vec2::new(cos_phi, sin_phi)
+}

@@ -1,0 +1,56 @@
+//! Where a volume stands.
+
+use glam::{Affine3A, EulerRot, Mat3A, Quat, Vec3, Vec3A};
+
+use crate::scene::settings::VolumeSettings;
+
+/// The placement of a volume: scale, then rotation about x, y and z in turn, then translation; or
+/// its matrix.
+pub(crate) fn world_from_file(volume: &VolumeSettings) -> Affine3A {
+    if let Some(rows) = volume.matrix {
+        let column = |i: usize| Vec3A::from_array(rows.map(|row| row[i]));
+        return Affine3A {
+            matrix3: Mat3A::from_cols(column(0), column(1), column(2)),
+            translation: column(3),
+        };
+    }
+    let [x, y, z] = volume.rotate.map(f32::to_radians);
+    // The last of the three factors acts first.
+    let rotation = Quat::from_euler(EulerRot::ZYX, z, y, x);
+    Affine3A::from_scale_rotation_translation(
+        Vec3::from_array(volume.scale.axes()),
+        rotation,
+        Vec3::from_array(volume.translate),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::settings::Extent;
+
+    fn moved(volume: &VolumeSettings, point: [f32; 3]) -> Vec3A {
+        world_from_file(volume).transform_point3a(Vec3A::from_array(point))
+    }
+
+    #[test]
+    fn scale_comes_first_then_x_y_z_then_translation() {
+        let volume = VolumeSettings {
+            scale: Extent::Axes([1.0, 2.0, 3.0]),
+            rotate: [90.0, 0.0, 90.0],
+            translate: [10.0, 0.0, 0.0],
+            ..VolumeSettings::default()
+        };
+        // (0, 1, 0) is scaled to (0, 2, 0), turned about x to (0, 0, 2) and stays so about z.
+        assert!(moved(&volume, [0.0, 1.0, 0.0]).abs_diff_eq(Vec3A::new(10.0, 0.0, 2.0), 1e-5));
+        // (0, 0, 1): (0, 0, 3), about x to (0, -3, 0), about z to (3, 0, 0).
+        assert!(moved(&volume, [0.0, 0.0, 1.0]).abs_diff_eq(Vec3A::new(13.0, 0.0, 0.0), 1e-5));
+    }
+
+    #[test]
+    fn a_matrix_is_rows_for_column_vectors() {
+        let matrix = [[0.0, -1.0, 0.0, 5.0], [1.0, 0.0, 0.0, 6.0], [0.0, 0.0, 2.0, 7.0]];
+        let volume = VolumeSettings { matrix: Some(matrix), ..VolumeSettings::default() };
+        assert_eq!(moved(&volume, [1.0, 2.0, 3.0]), Vec3A::new(3.0, 7.0, 13.0));
+    }
+}

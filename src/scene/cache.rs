@@ -1,0 +1,225 @@
+//! Volume files in memory: each is read once, each grid of it when first needed, and what was
+//! derived from them is kept while only other numbers of the scene change.
+
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::SystemTime;
+
+use glam::DAffine3;
+
+use super::embedded;
+use super::settings::VolumeSettings;
+use crate::error::{Error, Progress, Result};
+use crate::volume::body::Volume;
+use crate::volume::grid::{IndexBox, SparseGrid};
+use crate::volume::vdb::{Directory, GridClass, GridInfo, VdbValues};
+
+/// Volume files and the volumes built from them, shared by everything that builds scenes.
+#[derive(Default)]
+pub struct VolumeCache {
+    files: Mutex<HashMap<String, Arc<VolumeFile>>>,
+    volumes: Mutex<Vec<BuiltVolume>>,
+}
+
+/// A volume as it was built, before it is placed.
+#[derive(Clone)]
+pub(super) struct BuiltVolume {
+    /// The settings without name and placement.
+    pub(super) settings: VolumeSettings,
+    /// The file it was built from, if any.
+    pub(super) file: Option<Arc<VolumeFile>>,
+    /// What was built.
+    pub(super) volume: Arc<Volume>,
+    /// From the volume's own space to that of the file.
+    pub(super) file_from_local: DAffine3,
+}
+
+/// A volume file whose grids are loaded when they are asked for.
+pub struct VolumeFile {
+    name: String,
+    stamp: Option<Stamp>,
+    directory: Directory,
+    grids: Mutex<Vec<Option<VdbValues>>>,
+}
+
+/// What tells that a file has changed: its time and its size.
+type Stamp = (Option<SystemTime>, u64);
+
+/// A grid in memory with its place in the file's space.
+#[derive(Clone)]
+pub struct PlacedGrid {
+    /// Its name in the file.
+    pub name: String,
+    /// What it is meant to be.
+    pub class: GridClass,
+    /// Its voxels.
+    pub values: GridValues,
+    /// From its index space to the file's world.
+    pub world_from_index: DAffine3,
+}
+
+/// The voxels of a grid.
+#[derive(Clone)]
+pub enum GridValues {
+    /// Single numbers.
+    Float(Arc<SparseGrid<f32>>),
+    /// Vectors or colors.
+    Vector(Arc<SparseGrid<glam::Vec3A>>),
+}
+
+impl VolumeCache {
+    /// The file of that name (`builtin:NAME` for an embedded one), read again if it has changed.
+    ///
+    /// # Errors
+    /// It cannot be read or is not a volume file; names the file.
+    pub fn file(&self, name: &str, progress: Progress) -> Result<Arc<VolumeFile>> {
+        let embedded = embedded::volume(name)?;
+        let stamp = match embedded {
+            Some(_) => None,
+            None => Some(stamp_of(name)?),
+        };
+        let known = locked(&self.files).get(name).cloned();
+        if let Some(known) = known.filter(|known| known.stamp == stamp) {
+            return Ok(known);
+        }
+        let directory = match embedded {
+            Some(bytes) => Directory::parse(name, bytes, progress)?,
+            None => Directory::open(name, progress)?,
+        };
+        let grids = Mutex::new(vec![None; directory.grids.len()]);
+        let file = Arc::new(VolumeFile { name: name.to_owned(), stamp, directory, grids });
+        locked(&self.files).insert(name.to_owned(), file.clone());
+        Ok(file)
+    }
+
+    /// A volume built before from the same settings and the same state of the file.
+    pub(super) fn built(
+        &self,
+        settings: &VolumeSettings,
+        file: Option<&Arc<VolumeFile>>,
+    ) -> Option<BuiltVolume> {
+        let volumes = locked(&self.volumes);
+        volumes.iter().find(|built| built.is_of(settings, file)).cloned()
+    }
+
+    /// Keeps a volume until a scene is built without it.
+    pub(super) fn keep(&self, built: BuiltVolume) {
+        locked(&self.volumes).push(built);
+    }
+
+    /// Lets go of every volume and file that the scene just built does not use.
+    pub(super) fn retain(&self, used: &[Arc<Volume>]) {
+        let mut volumes = locked(&self.volumes);
+        volumes.retain(|built| used.iter().any(|volume| Arc::ptr_eq(volume, &built.volume)));
+        let in_use = |file: &Arc<VolumeFile>| {
+            volumes.iter().filter_map(|v| v.file.as_ref()).any(|used| Arc::ptr_eq(used, file))
+        };
+        locked(&self.files).retain(|_, file| in_use(file));
+    }
+}
+
+impl BuiltVolume {
+    fn is_of(&self, settings: &VolumeSettings, file: Option<&Arc<VolumeFile>>) -> bool {
+        let same_file = match (&self.file, file) {
+            (Some(a), Some(b)) => Arc::ptr_eq(a, b),
+            (None, None) => true,
+            _ => false,
+        };
+        same_file && self.settings == *settings
+    }
+}
+
+impl VolumeFile {
+    /// The name it was asked for by.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// What is known of the file and its grids without their voxels.
+    pub fn directory(&self) -> &Directory {
+        &self.directory
+    }
+
+    /// The grid of that name, loaded if it is not yet.
+    ///
+    /// # Errors
+    /// There is none (`field` is the key that asked for it), it cannot be read, or it is of a type
+    /// that holds no values to render.
+    pub fn grid(&self, name: &str, field: &str, progress: Progress) -> Result<PlacedGrid> {
+        let index = self.directory.grids.iter().position(|grid| grid.name == name);
+        let Some(index) = index else {
+            return Err(Error::invalid(&self.name, field, self.no_such_grid(name)));
+        };
+        self.grid_at(index, field, progress)
+    }
+
+    /// The grid at `index` of the directory; as [`VolumeFile::grid`].
+    ///
+    /// # Errors
+    /// As [`VolumeFile::grid`].
+    pub fn grid_at(&self, index: usize, field: &str, progress: Progress) -> Result<PlacedGrid> {
+        let Some(info) = self.directory.grids.get(index) else {
+            let reason = format!("there is no grid {index}; the file has {}", self.names());
+            return Err(Error::invalid(&self.name, field, reason));
+        };
+        let known = locked(&self.grids).get(index).cloned().flatten();
+        let values = match known {
+            Some(values) => values,
+            None => {
+                let values = self.directory.load(index, progress)?;
+                if let Some(place) = locked(&self.grids).get_mut(index) {
+                    *place = Some(values.clone());
+                }
+                values
+            }
+        };
+        let values = match values {
+            VdbValues::Float(grid) => GridValues::Float(grid),
+            VdbValues::Vec3(grid) => GridValues::Vector(grid),
+            VdbValues::Unsupported(reason) => {
+                let reason = format!("the grid \"{}\" cannot be rendered: {reason}", info.name);
+                return Err(Error::unsupported(&self.name, field, reason));
+            }
+        };
+        Ok(PlacedGrid::new(info, values))
+    }
+
+    /// The names of the grids, as a sentence lists them.
+    fn names(&self) -> String {
+        let names: Vec<String> =
+            self.directory.grids.iter().map(|grid| format!("\"{}\"", grid.name)).collect();
+        if names.is_empty() { "no grids".to_owned() } else { names.join(", ") }
+    }
+
+    fn no_such_grid(&self, name: &str) -> String {
+        format!("there is no grid \"{name}\"; the file has {}", self.names())
+    }
+}
+
+impl PlacedGrid {
+    fn new(info: &GridInfo, values: GridValues) -> Self {
+        let world_from_index = info.transform.index_to_world;
+        Self { name: info.name.clone(), class: info.class, values, world_from_index }
+    }
+
+    /// The box around its stored voxels in index space, both ends included; `None` if empty.
+    pub fn bounds(&self) -> Option<IndexBox> {
+        match &self.values {
+            GridValues::Float(grid) => grid.bounds(),
+            GridValues::Vector(grid) => grid.bounds(),
+        }
+    }
+}
+
+fn stamp_of(name: &str) -> Result<Stamp> {
+    let metadata = std::fs::metadata(name).map_err(|e| Error::io(name, e))?;
+    if metadata.is_dir() {
+        return Err(Error::invalid(name, "", "this is a folder; name a volume file in it"));
+    }
+    Ok((metadata.modified().ok(), metadata.len()))
+}
+
+/// The contents, also after a panic elsewhere: they are sound after every statement.
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}

@@ -1,0 +1,120 @@
+//! What a volume file holds, for people: its grids with their sizes and ranges.
+
+use serde::Serialize;
+
+use super::VolumeCache;
+use super::cache::{GridValues, PlacedGrid, VolumeFile};
+use super::guess::grid_bounds;
+use crate::error::{Progress, Result};
+use crate::volume::vdb::GridInfo;
+
+/// A volume file in words and numbers.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FileDescription {
+    /// The name it was asked for by.
+    pub file: String,
+    /// The file's own named values.
+    pub metadata: Vec<(String, String)>,
+    /// Its grids in the order of the file.
+    pub grids: Vec<GridDescription>,
+}
+
+/// A grid of a file in words and numbers.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct GridDescription {
+    /// Its name.
+    pub name: String,
+    /// What it stores: `float`, `half float`, `vec3`, ... as the file says.
+    pub type_name: String,
+    /// What it is meant to be: `fog volume`, `level set`, ...
+    pub class: String,
+    /// Edges of a voxel in the file's space.
+    pub voxel_size: [f64; 3],
+    /// Its voxels, if it can be rendered.
+    pub voxels: Option<VoxelDescription>,
+    /// Why it cannot be rendered.
+    pub unsupported: Option<String>,
+}
+
+/// The voxels of a grid in numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct VoxelDescription {
+    /// How many are active.
+    pub active: u64,
+    /// The smallest active value; of vectors the smallest component.
+    pub min: f32,
+    /// The largest active value; of vectors the largest component.
+    pub max: f32,
+    /// The mean of the active values; of vectors the mean of the components.
+    pub mean: f32,
+    /// The corners of the box around the stored voxels in the file's space; `None` if empty.
+    pub bounds: Option<[[f32; 3]; 2]>,
+    /// Memory that they take.
+    pub memory_bytes: usize,
+}
+
+/// Describes a volume file; what is read of it stays in `cache`.
+///
+/// # Errors
+/// The file cannot be read or a grid of it is damaged; names it.
+pub fn describe(name: &str, cache: &VolumeCache, progress: Progress) -> Result<FileDescription> {
+    let file = cache.file(name, progress)?;
+    let directory = file.directory();
+    let metadata = directory.metadata.iter().map(|(k, v)| (k.clone(), v.to_string())).collect();
+    let count = directory.grids.len().max(1) as f32;
+    let describe_one = |(index, info)| {
+        let part = |fraction: f32| progress((index as f32 + fraction) / count);
+        grid(&file, index, info, &part)
+    };
+    let grids = directory.grids.iter().enumerate().map(describe_one).collect::<Result<_>>()?;
+    Ok(FileDescription { file: name.to_owned(), metadata, grids })
+}
+
+fn grid(
+    file: &VolumeFile,
+    index: usize,
+    info: &GridInfo,
+    progress: Progress,
+) -> Result<GridDescription> {
+    let voxels = match &info.unsupported {
+        Some(_) => None,
+        None => Some(voxels(&file.grid_at(index, &info.name, progress)?)),
+    };
+    let half = if info.is_half { "half " } else { "" };
+    Ok(GridDescription {
+        name: info.name.clone(),
+        type_name: format!("{half}{}", info.type_name),
+        class: info.class.to_string(),
+        voxel_size: info.transform.voxel_size.to_array(),
+        voxels,
+        unsupported: info.unsupported.clone(),
+    })
+}
+
+fn voxels(grid: &PlacedGrid) -> VoxelDescription {
+    let bounds = grid_bounds(grid).map(|bounds| [bounds.min.to_array(), bounds.max.to_array()]);
+    match &grid.values {
+        GridValues::Float(values) => {
+            let stats = values.stats();
+            VoxelDescription {
+                active: stats.active_voxels,
+                min: stats.min,
+                max: stats.max,
+                mean: stats.mean,
+                bounds,
+                memory_bytes: stats.memory_bytes,
+            }
+        }
+        GridValues::Vector(values) => {
+            let stats = values.stats();
+            VoxelDescription {
+                active: stats.active_voxels,
+                min: stats.min.min_element(),
+                max: stats.max.max_element(),
+                mean: stats.mean.element_sum() / 3.0,
+                bounds,
+                memory_bytes: stats.memory_bytes,
+            }
+        }
+    }
+}

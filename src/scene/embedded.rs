@@ -1,0 +1,47 @@
+//! What the program carries with it, so that it shows something from any folder.
+
+use std::path::Path;
+
+use super::files::BUILTIN;
+use crate::error::{Error, Result};
+
+/// The scene that opens when none is named.
+pub const DEFAULT_SCENE: &str = "builtin:torch";
+
+const SCENES: &[(&str, &str)] = &[("torch", include_str!("../../scenes/torch.toml"))];
+
+const VOLUMES: &[(&str, &[u8])] = &[
+    ("torch_hd", include_bytes!("../../assets/torch_hd.vdb")),
+    ("plume", include_bytes!("../../assets/plume.vdb")),
+];
+
+/// The text of the embedded scene of that name, `builtin:` included.
+pub(super) fn scene(name: &str) -> Option<&'static str> {
+    let name = name.strip_prefix(BUILTIN)?;
+    let name = name.strip_suffix(".toml").unwrap_or(name);
+    SCENES.iter().find(|(known, _)| *known == name).map(|(_, text)| *text)
+}
+
+/// The embedded volume that `file` names, or `None` if it names a file of its own.
+///
+/// # Errors
+/// There is no such embedded volume.
+pub fn volume(file: &str) -> Result<Option<&'static [u8]>> {
+    let Some(name) = file.strip_prefix(BUILTIN) else { return Ok(None) };
+    let name = name.strip_suffix(".vdb").unwrap_or(name);
+    match VOLUMES.iter().find(|(known, _)| *known == name) {
+        Some((_, bytes)) => Ok(Some(bytes)),
+        None => {
+            let known: Vec<String> = VOLUMES.iter().map(|(n, _)| format!("{BUILTIN}{n}")).collect();
+            let reason =
+                format!("there is no such embedded volume; there are {}", known.join(", "));
+            Err(Error::invalid(file, "", reason))
+        }
+    }
+}
+
+/// What to call a volume file: its name without folders and extension.
+pub(super) fn short_name(file: &str) -> &str {
+    let file = file.strip_prefix(BUILTIN).unwrap_or(file);
+    Path::new(file).file_stem().and_then(|stem| stem.to_str()).unwrap_or(file)
+}

@@ -1,0 +1,141 @@
+//! The names of files in scenes: relative in the file, absolute in the settings.
+
+use std::ffi::OsStr;
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::{Component, Path, PathBuf};
+
+use super::keys;
+use crate::error::{Error, Result};
+
+/// What begins the name of something embedded in the program.
+pub(super) const BUILTIN: &str = "builtin:";
+
+/// Whether the key at `path` names a file.
+pub(super) fn is_file_key(path: &str) -> bool {
+    keys::general(path) == "volume.N.file"
+}
+
+/// The folder that a scene file's relative names start from.
+pub(super) fn folder_of(scene_file: &Path) -> Result<PathBuf> {
+    let folder = match scene_file.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    folder.canonicalize().map_err(|e| Error::io(scene_file, e))
+}
+
+/// The absolute name of `file` as written in a scene in `folder`; embedded ones stay as they are.
+pub(super) fn resolve(file: &str, folder: &Path, source: &str) -> Result<String> {
+    if file.starts_with(BUILTIN) || file.is_empty() {
+        return Ok(file.to_owned());
+    }
+    let joined = std::path::absolute(folder.join(file)).map_err(|e| Error::io(file, e))?;
+    let clean = without_dots(&joined);
+    match clean.to_str() {
+        Some(text) => Ok(text.to_owned()),
+        None => Err(Error::unsupported(
+            source,
+            "file",
+            format!("the name of {} is not Unicode; rename its folders", clean.display()),
+        )),
+    }
+}
+
+/// `file` as it is written into a scene in `folder`: relative if they share more than the root.
+pub(super) fn relative(file: &str, folder: &Path) -> String {
+    let path = Path::new(file);
+    if file.starts_with(BUILTIN) || !path.is_absolute() {
+        return file.to_owned();
+    }
+    let (from, to): (Vec<_>, Vec<_>) = (folder.components().collect(), path.components().collect());
+    let shared = from.iter().zip(&to).take_while(|(a, b)| a == b).count();
+    let named = |component: &&Component| matches!(component, Component::Normal(_));
+    if from.iter().take(shared).filter(named).count() == 0 {
+        return file.to_owned();
+    }
+    let up = std::iter::repeat_n(Component::ParentDir, from.len() - shared);
+    let relative: PathBuf = up.chain(to.into_iter().skip(shared)).collect();
+    // A relative name that would read as an embedded one needs a folder in front.
+    match relative.to_str() {
+        Some(text) if text.starts_with(BUILTIN) => format!("./{text}"),
+        Some(text) => text.to_owned(),
+        None => file.to_owned(),
+    }
+}
+
+/// Whether the name ends in `.extension`, in any case.
+pub(super) fn has_extension(path: &Path, extension: &str) -> bool {
+    path.extension().and_then(OsStr::to_str).is_some_and(|e| e.eq_ignore_ascii_case(extension))
+}
+
+/// Writes `text` to `path` as a whole or not at all: to a temporary name beside it, then renamed.
+pub(super) fn write_whole(path: &Path, text: &str) -> Result<()> {
+    let folder = folder_of(path)?;
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".flambeau-").suffix(".tmp");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(std::fs::Permissions::from_mode(0o666));
+    }
+    let mut file = builder.tempfile_in(folder).map_err(|e| Error::io(path, e))?;
+    write_synced(file.as_file_mut(), text).map_err(|e| Error::io(path, e))?;
+    file.persist(path).map_err(|e| Error::io(path, e.error))?;
+    Ok(())
+}
+
+fn write_synced(file: &mut File, text: &str) -> std::io::Result<()> {
+    let mut writer = BufWriter::new(&mut *file);
+    writer.write_all(text.as_bytes())?;
+    writer.flush()?;
+    drop(writer);
+    file.sync_all()
+}
+
+/// The path with `.` and `..` carried out on its text. The folder it starts from has no symbolic
+/// links (see [`folder_of`]), so this names the same file.
+fn without_dots(path: &Path) -> PathBuf {
+    let mut clean = PathBuf::new();
+    for component in path.components() {
+        match component {
+            Component::CurDir => {}
+            Component::ParentDir => {
+                clean.pop();
+            }
+            other => clean.push(other),
+        }
+    }
+    clean
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn relative_names_come_back() {
+        let folder = Path::new("/home/ann/scenes");
+        for (file, written) in [
+            ("/home/ann/scenes/torch.vdb", "torch.vdb"),
+            ("/home/ann/assets/torch.vdb", "../assets/torch.vdb"),
+            ("/mnt/farm/torch.vdb", "/mnt/farm/torch.vdb"),
+            ("/home/ann/scenes/builtin:x.vdb", "./builtin:x.vdb"),
+            ("builtin:torch_hd", "builtin:torch_hd"),
+        ] {
+            assert_eq!(relative(file, folder), written);
+            assert_eq!(resolve(written, folder, "").unwrap(), file);
+        }
+    }
+
+    #[test]
+    fn writing_replaces_the_file_and_leaves_nothing_beside_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("scene.toml");
+        write_whole(&path, "one").unwrap();
+        write_whole(&path, "two").unwrap();
+        assert_eq!(std::fs::read_to_string(&path).unwrap(), "two");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+        assert!(write_whole(&folder.path().join("no/scene.toml"), "x").is_err());
+    }
+}

@@ -1,0 +1,272 @@
+//! A bare volume in place of a scene: what its grids are, which way is up, how thick and bright it
+//! should look, and where to look from. Every guess is an ordinary setting, and is told in words.
+
+mod columns;
+mod roles;
+
+use std::sync::Arc;
+
+use glam::Vec3A;
+
+use super::cache::{PlacedGrid, VolumeFile};
+use super::embedded::short_name;
+use super::frame::{bounds_in_world, frame};
+use super::settings::{
+    Albedo, CameraSettings, Color, DensitySettings, EmissionMode, EmissionSettings, LightKind,
+    LightSettings, Normalize, PhaseSettings, Settings, VolumeSettings,
+};
+use crate::error::{Error, Progress, Result};
+use crate::math::{Aabb, luminance};
+use crate::volume::{blackbody, vdb::MetaValue};
+use columns::{columns, quantile, two_digits};
+use roles::{Candidate, Glow};
+
+/// A scene made up for a bare volume.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Guess {
+    /// The guesses as settings.
+    pub settings: Settings,
+    /// The guesses in words, one a line.
+    pub notes: Vec<String>,
+}
+
+/// How thick smoke by itself should look: the optical depth of a fairly thick line of sight.
+const SMOKE_DEPTH: f32 = 6.0;
+/// The same for the soot of a fire, which must not hide it.
+const SOOT_DEPTH: f32 = 0.8;
+/// The radiance of a fairly bright line of sight through fire.
+const FIRE_RADIANCE: f32 = 1.5;
+/// The lines of sight that count as fairly thick and fairly bright.
+const FAIRLY: f32 = 0.8;
+/// Kelvin of the hottest place of a temperature without a unit, where its range tells nothing.
+const HOTTEST_KELVIN: f32 = 2500.0;
+/// Kelvin per unit of temperature in files that follow Blender.
+const BLENDER_KELVIN: f32 = 1000.0;
+
+/// Makes up a scene for `file`.
+///
+/// # Errors
+/// No grid of it can be rendered; names them and what to do.
+pub(super) fn guess(file: &Arc<VolumeFile>, progress: Progress) -> Result<Guess> {
+    let grids = load(file, progress)?;
+    let density = roles::density(&grids);
+    let glow = roles::glow(&grids);
+    let mut notes = Vec::new();
+    let seen: Vec<&Candidate> = density.into_iter().chain(glow.as_ref().map(|g| g.0)).collect();
+    let Some(bounds) = bounds_of(&seen) else { return Err(nothing_to_see(file)) };
+    let is_y_up = is_y_up(file, &bounds, &mut notes);
+    // The line of sight of the default camera, in the file's own space.
+    let axis = if is_y_up { 2 } else { 1 };
+
+    let mut volume = VolumeSettings {
+        name: short_name(file.name()).to_owned(),
+        file: Some(file.name().to_owned()),
+        albedo: Albedo::Gray(if glow.is_some() { 0.3 } else { 0.9 }),
+        phase: PhaseSettings { g: 0.3 },
+        ..VolumeSettings::default()
+    };
+    if is_y_up {
+        volume.rotate = [90.0, 0.0, 0.0];
+    }
+    volume.density = density_settings(density, glow.is_some(), &bounds, axis, &mut notes);
+    if let Some((grid, kind)) = &glow {
+        volume.emission = emission_settings(grid, kind, &bounds, axis, &mut notes);
+    }
+
+    let mut settings = Settings::default();
+    let world_bounds = bounds.transformed(&super::build::world_from_file(&volume));
+    settings.camera = default_camera(&settings, &world_bounds);
+    if glow.is_none() {
+        daylight(&mut settings);
+        notes.push("guessed: nothing glows, so there is a sun and a sky".to_owned());
+    }
+    settings.volume.push(volume);
+    Ok(Guess { settings, notes })
+}
+
+fn load(file: &Arc<VolumeFile>, progress: Progress) -> Result<Vec<Candidate>> {
+    let infos = &file.directory().grids;
+    let count = infos.len().max(1) as f32;
+    roles::candidates(infos.len(), |index| {
+        let Some(info) = infos.get(index) else { return Ok(None) };
+        if info.unsupported.is_some() || !roles::is_worth_loading(&info.name) {
+            return Ok(None);
+        }
+        let part = |fraction: f32| progress((index as f32 + fraction) / count);
+        file.grid_at(index, &info.name, &part).map(Some)
+    })
+}
+
+fn nothing_to_see(file: &VolumeFile) -> Error {
+    let grids: Vec<String> = file
+        .directory()
+        .grids
+        .iter()
+        .map(|grid| format!("\"{}\" ({}, {})", grid.name, grid.type_name, grid.class))
+        .collect();
+    let reason = if grids.is_empty() {
+        "there are no grids in this file; export it again".to_owned()
+    } else {
+        format!(
+            "no grid can be shown as fog or fire: {}; export a fog volume with values above zero",
+            grids.join(", ")
+        )
+    };
+    Error::invalid(file.name(), "", reason)
+}
+
+/// The box around the active voxels of the grids, in the file's space.
+fn bounds_of(grids: &[&Candidate]) -> Option<Aabb> {
+    let boxes = grids.iter().filter_map(|candidate| grid_bounds(&candidate.grid));
+    boxes.reduce(|a, b| a.union(&b))
+}
+
+/// The box around a grid's stored voxels, in the file's space.
+pub(super) fn grid_bounds(grid: &PlacedGrid) -> Option<Aabb> {
+    let bounds = grid.bounds()?;
+    let world_from_index = grid.world_from_index.as_affine3a();
+    Some(bounds_in_world(bounds.min.as_vec3(), bounds.max.as_vec3(), &world_from_index))
+}
+
+/// Blender writes z up, Houdini y up; files of neither stand on the ground of one of the axes.
+fn is_y_up(file: &VolumeFile, bounds: &Aabb, notes: &mut Vec<String>) -> bool {
+    let metadata = &file.directory().metadata;
+    let grids = &file.directory().grids;
+    let sources = || std::iter::once(metadata).chain(grids.iter().map(|grid| &grid.metadata));
+    let creator = sources().find_map(|values| match values.get("creator") {
+        Some(MetaValue::Text(creator)) => Some(creator.to_ascii_lowercase()),
+        _ => None,
+    });
+    let says = |name: &str| creator.as_ref().is_some_and(|creator| creator.contains(name));
+    let from_blender = || {
+        let key = |key: &String| key.starts_with("blender/") || key == "file_base_resolution";
+        sources().any(|values| values.keys().any(|name| key(name)))
+    };
+    let (is_y_up, why) = if says("houdini") {
+        (true, "Houdini wrote it")
+    } else if says("blender") || from_blender() {
+        (false, "Blender wrote it")
+    } else {
+        (stands_on_y(bounds), "from where it stands")
+    };
+    notes.push(format!("guessed: {} is up ({why})", if is_y_up { "y" } else { "z" }));
+    is_y_up
+}
+
+/// Whether the box stands on y = 0 and is centered about z = 0, rather than the other way round.
+fn stands_on_y(bounds: &Aabb) -> bool {
+    let size = bounds.size().max_element();
+    let stands = |up: usize, side: usize| {
+        (bounds.min[up] / size).abs() + (bounds.center()[side] / size).abs()
+    };
+    stands(1, 2) + 0.05 < stands(2, 1)
+}
+
+fn density_settings(
+    density: Option<&Candidate>,
+    is_fire: bool,
+    bounds: &Aabb,
+    axis: usize,
+    notes: &mut Vec<String>,
+) -> DensitySettings {
+    let Some(density) = density else {
+        notes.push("guessed: there is no density, only fire".to_owned());
+        return DensitySettings { grid: None, scale: Color::Gray(0.0) };
+    };
+    let depths = columns(&density.grid, bounds, axis, |value| value.x.max(0.0));
+    let wanted = if is_fire { SOOT_DEPTH } else { SMOKE_DEPTH };
+    let scale = quantile(&depths, FAIRLY).map_or(1.0, |depth| two_digits(wanted / depth));
+    let name = &density.grid.name;
+    notes.push(format!("guessed: \"{name}\" is the density, made {scale} times as thick"));
+    DensitySettings { grid: Some(name.clone()), scale: Color::Gray(scale) }
+}
+
+fn emission_settings(
+    candidate: &Candidate,
+    kind: &Glow,
+    bounds: &Aabb,
+    axis: usize,
+    notes: &mut Vec<String>,
+) -> EmissionSettings {
+    let name = &candidate.grid.name;
+    let mut emission = EmissionSettings { grid: Some(name.clone()), ..EmissionSettings::default() };
+    match kind {
+        Glow::Emission => {
+            emission.mode = EmissionMode::Grid;
+            notes.push(format!("guessed: \"{name}\" is the emission itself"));
+        }
+        Glow::Kelvin | Glow::Unitless => {
+            emission.mode = EmissionMode::Blackbody;
+            emission.normalize = Some(Normalize::T4);
+            let scale = kelvin_scale(kind, candidate.max);
+            emission.kelvin_scale = Some(scale);
+            notes.push(format!("guessed: \"{name}\" is a temperature, {scale} kelvin a unit"));
+        }
+        Glow::Flame => {
+            emission.mode = EmissionMode::Ramp;
+            emission.stops = Some(flame_stops(candidate.max));
+            notes.push(format!("guessed: \"{name}\" is flame, through a ramp of colors"));
+        }
+    }
+    let brightness = brightness_of(&emission);
+    let sums = columns(&candidate.grid, bounds, axis, brightness);
+    let scale = quantile(&sums, FAIRLY).map_or(1.0, |sum| two_digits(FIRE_RADIANCE / sum));
+    match kind {
+        Glow::Emission => emission.scale = Some(scale),
+        _ => emission.intensity = Some(scale),
+    }
+    emission
+}
+
+fn kelvin_scale(kind: &Glow, max: f32) -> f32 {
+    match kind {
+        Glow::Kelvin => 1.0,
+        _ if (1.2..=5.0).contains(&max) => BLENDER_KELVIN,
+        _ => two_digits(HOTTEST_KELVIN / max),
+    }
+}
+
+/// From nothing through red and orange to yellow at the grid's largest value.
+fn flame_stops(max: f32) -> Vec<[f32; 4]> {
+    [[0.0, 0.0, 0.0, 0.0], [0.35, 0.5, 0.05, 0.003], [0.7, 2.0, 0.6, 0.08], [1.0, 3.0, 1.6, 0.5]]
+        .map(|[value, r, g, b]| [two_digits(value * max), r, g, b])
+        .to_vec()
+}
+
+/// The luminance of the emission at a value of its grid, at intensity 1.
+fn brightness_of(emission: &EmissionSettings) -> impl Fn(Vec3A) -> f32 {
+    let (mode, scale) = (emission.mode, emission.kelvin_scale());
+    let (reference, largest) = (emission.reference_kelvin(), emission.stops().last().copied());
+    move |value| match mode {
+        EmissionMode::Blackbody => {
+            let kelvin = (value.x * scale).max(0.0);
+            luminance(blackbody::peak_normalized(kelvin)) * (kelvin / reference).powi(4)
+        }
+        EmissionMode::Ramp => largest.map_or(0.0, |[top, r, g, b]| {
+            // The ramp rises about with the square of the value.
+            luminance(Vec3A::new(r, g, b)) * (value.x.max(0.0) / top).powi(2)
+        }),
+        _ => luminance(value.max(Vec3A::ZERO)),
+    }
+}
+
+/// A little from above and from one side.
+fn default_camera(settings: &Settings, bounds: &Aabb) -> CameraSettings {
+    let view = CameraSettings {
+        position: [0.25, -1.0, 0.18],
+        target: [0.0; 3],
+        ..CameraSettings::default()
+    };
+    let [width, height] = settings.film.size;
+    frame(&view, bounds, width as f32 / height as f32)
+}
+
+fn daylight(settings: &mut Settings) {
+    settings.environment.radiance = Color::Rgb([0.18, 0.24, 0.35]);
+    settings.light.push(LightSettings {
+        kind: LightKind::Sun,
+        direction: Some([0.7, 0.45, -0.55]),
+        intensity: Color::Rgb([5.0, 4.6, 4.0]),
+        ..LightSettings::default()
+    });
+}

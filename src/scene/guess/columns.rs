@@ -1,0 +1,85 @@
+//! Sums of a grid along lines through it, the measure of how thick or bright it looks.
+
+use glam::Vec3A;
+
+use crate::math::Aabb;
+use crate::scene::cache::{GridValues, PlacedGrid};
+
+/// Lines across each of the two other axes.
+const LINES: usize = 32;
+/// Samples along each line.
+const SAMPLES: usize = 64;
+
+/// ∫ of `measure` of the grid's value along lines through `bounds` (in the file's space) in the
+/// direction of `axis`, of every line that meets anything, in ascending order.
+pub(super) fn columns(
+    grid: &PlacedGrid,
+    bounds: &Aabb,
+    axis: usize,
+    measure: impl Fn(Vec3A) -> f32,
+) -> Vec<f32> {
+    let index_from_file = grid.world_from_index.inverse().as_affine3a();
+    let value = |place: Vec3A| {
+        let index = index_from_file.transform_point3a(place);
+        match &grid.values {
+            GridValues::Float(values) => Vec3A::splat(values.sample(index)),
+            GridValues::Vector(values) => values.sample(index),
+        }
+    };
+    let step = bounds.size()[axis] / SAMPLES as f32;
+    let fraction = |index: usize, count: usize| (index as f32 + 0.5) / count as f32;
+    let line = |u: f32, v: f32| {
+        let sum: f32 = (0..SAMPLES)
+            .map(|i| {
+                let mut place = Vec3A::ZERO;
+                place[axis] = fraction(i, SAMPLES);
+                place[(axis + 1) % 3] = u;
+                place[(axis + 2) % 3] = v;
+                measure(value(bounds.min + place * bounds.size()))
+            })
+            .sum();
+        sum * step
+    };
+    let mut sums: Vec<f32> = (0..LINES * LINES)
+        .map(|i| line(fraction(i % LINES, LINES), fraction(i / LINES, LINES)))
+        .filter(|sum| *sum > 0.0)
+        .collect();
+    sums.sort_by(f32::total_cmp);
+    sums
+}
+
+/// The value below which the share `part` of the sorted sums lies; those under 1 percent of the
+/// largest count as nothing.
+pub(super) fn quantile(sorted: &[f32], part: f32) -> Option<f32> {
+    let largest = *sorted.last()?;
+    let something = sorted.partition_point(|sum| *sum < 0.01 * largest);
+    let seen = sorted.get(something..)?;
+    let index = (part * seen.len() as f32) as usize;
+    seen.get(index.min(seen.len().saturating_sub(1))).copied()
+}
+
+/// `value` to two digits, as one would type it.
+pub(super) fn two_digits(value: f32) -> f32 {
+    format!("{value:.1e}").parse().unwrap_or(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantiles_pass_over_next_to_nothing() {
+        let sums = [0.001, 0.002, 1.0, 2.0, 3.0, 4.0];
+        assert_eq!(quantile(&sums, 0.0), Some(1.0));
+        assert_eq!(quantile(&sums, 0.5), Some(3.0));
+        assert_eq!(quantile(&sums, 1.0), Some(4.0));
+        assert_eq!(quantile(&[], 0.5), None);
+    }
+
+    #[test]
+    fn numbers_are_rounded_as_typed() {
+        assert_eq!(two_digits(12.345), 12.0);
+        assert_eq!(two_digits(0.034_56), 0.035);
+        assert_eq!(two_digits(1234.0), 1200.0);
+    }
+}

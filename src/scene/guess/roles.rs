@@ -1,0 +1,123 @@
+//! Which grid of a file is what, by name, type, class and range.
+
+use crate::error::Result;
+use crate::scene::cache::{GridValues, PlacedGrid};
+use crate::volume::vdb::GridClass;
+
+/// A grid of numbers or colors that is worth rendering.
+pub(super) struct Candidate {
+    pub(super) grid: PlacedGrid,
+    /// Its largest active value; for colors of the largest channel.
+    pub(super) max: f32,
+}
+
+/// What glows, and how.
+pub(super) enum Glow {
+    /// A grid of emission itself.
+    Emission,
+    /// A temperature in kelvin.
+    Kelvin,
+    /// A temperature without a unit.
+    Unitless,
+    /// How much flame there is.
+    Flame,
+}
+
+const DENSITY: &[&str] = &["density", "smoke", "soot", "fog", "cloud", "density_noise", "vapour"];
+const EMISSION: &[&str] = &["emission", "emit", "ce", "le", "incandescence"];
+const TEMPERATURE: &[&str] = &["temperature", "temp", "heat", "kelvin"];
+const FLAME: &[&str] = &["flame", "flames", "fire", "burn", "flame_noise"];
+/// Grids that simulations write beside those that are seen.
+const OTHER: &[&str] = &[
+    "velocity",
+    "vel",
+    "v",
+    "shadow",
+    "color",
+    "colour",
+    "color_r",
+    "color_g",
+    "color_b",
+    "cd",
+    "fuel",
+    "fuel_noise",
+    "react",
+    "pressure",
+    "flags",
+    "phi",
+    "collision",
+    "divergence",
+    "age",
+];
+
+/// Above this a temperature is in kelvin.
+const KELVIN_FROM: f32 = 200.0;
+
+impl Candidate {
+    /// `None` for grids with nothing above zero.
+    pub(super) fn of(grid: PlacedGrid) -> Option<Self> {
+        let max = match &grid.values {
+            GridValues::Float(values) => values.stats().max,
+            GridValues::Vector(values) => values.stats().max.max_element(),
+        };
+        (max > 0.0).then_some(Self { grid, max })
+    }
+
+    fn is_number(&self) -> bool {
+        matches!(self.grid.values, GridValues::Float(_))
+    }
+
+    fn is_named(&self, names: &[&str]) -> bool {
+        self.rank(names).is_some()
+    }
+
+    /// The place of its name among `names`.
+    fn rank(&self, names: &[&str]) -> Option<usize> {
+        names.iter().position(|name| self.grid.name.eq_ignore_ascii_case(name))
+    }
+}
+
+/// The grid that is the density: by name, else the first fog that is named like nothing else.
+pub(super) fn density(grids: &[Candidate]) -> Option<&Candidate> {
+    let usable = || grids.iter().filter(|g| g.is_number() && g.grid.class != GridClass::LevelSet);
+    let named = usable().filter(|grid| grid.is_named(DENSITY)).min_by_key(|g| g.rank(DENSITY));
+    let unnamed = |grid: &&Candidate| {
+        ![EMISSION, TEMPERATURE, FLAME, OTHER].iter().any(|names| grid.is_named(names))
+    };
+    named.or_else(|| usable().find(unnamed))
+}
+
+/// The grid that glows: emission itself, else a temperature, else a flame.
+pub(super) fn glow(grids: &[Candidate]) -> Option<(&Candidate, Glow)> {
+    let best = |names: &[&str]| {
+        let usable = grids.iter().filter(|grid| grid.grid.class != GridClass::LevelSet);
+        usable.filter(|grid| grid.is_named(names)).min_by_key(|grid| grid.rank(names))
+    };
+    if let Some(emission) = best(EMISSION) {
+        return Some((emission, Glow::Emission));
+    }
+    let number = |names: &[&str]| best(names).filter(|grid| grid.is_number());
+    if let Some(temperature) = number(TEMPERATURE) {
+        let in_kelvin = temperature.max > KELVIN_FROM;
+        return Some((temperature, if in_kelvin { Glow::Kelvin } else { Glow::Unitless }));
+    }
+    number(FLAME).map(|flame| (flame, Glow::Flame))
+}
+
+/// Every grid of the file that has something above zero and might be seen; grids of other types
+/// are passed over.
+pub(super) fn candidates(
+    count: usize,
+    mut load: impl FnMut(usize) -> Result<Option<PlacedGrid>>,
+) -> Result<Vec<Candidate>> {
+    let mut grids = Vec::new();
+    for index in 0..count {
+        grids.extend(load(index)?.and_then(Candidate::of));
+    }
+    Ok(grids)
+}
+
+/// Whether a grid of that name can be seen at all, so that it is worth loading.
+pub(super) fn is_worth_loading(name: &str) -> bool {
+    !OTHER.iter().any(|other| name.eq_ignore_ascii_case(other))
+}

@@ -1,0 +1,58 @@
+//! From a name to settings: a scene file, an embedded scene, or a bare volume.
+
+use std::path::Path;
+
+use super::files::{self, BUILTIN};
+use super::{Overrides, Settings, VolumeCache, apply, embedded, guess, parse};
+use crate::error::{Error, NO_PROGRESS, Progress, Result};
+
+/// What was opened.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Opened {
+    /// The scene.
+    pub settings: Settings,
+    /// What was guessed for a bare volume, one a line; empty for scenes.
+    pub notes: Vec<String>,
+}
+
+/// The settings of a scene file, of a bare volume, or of `builtin:NAME`.
+///
+/// # Errors
+/// It cannot be read, or something in it is wrong; names the file, the key and the mend.
+pub fn load(source: &str) -> Result<Settings> {
+    let cache = VolumeCache::default();
+    open(source, &Overrides::default(), &cache, NO_PROGRESS).map(|opened| opened.settings)
+}
+
+/// As [`load`], with overrides laid over it. What is read of a bare volume stays in `cache`.
+///
+/// # Errors
+/// As [`load`], and [`Error::Cancelled`].
+pub fn open(
+    source: &str,
+    overrides: &Overrides,
+    cache: &VolumeCache,
+    progress: Progress,
+) -> Result<Opened> {
+    if let Some(text) = embedded::scene(source) {
+        return scene(text, source, Path::new(""), overrides);
+    }
+    let path = Path::new(source);
+    if source.starts_with(BUILTIN) || files::has_extension(path, "vdb") {
+        let name = files::resolve(source, Path::new(""), source)?;
+        let guess = guess::guess(&cache.file(&name, progress)?, progress)?;
+        let settings = apply(&guess.settings, overrides)?;
+        return Ok(Opened { settings, notes: guess.notes });
+    }
+    if !files::has_extension(path, "toml") {
+        let reason = "expected a scene (.toml), a volume (.vdb) or the name of an embedded one \
+                      (builtin:torch)";
+        return Err(Error::unsupported(source, "", reason));
+    }
+    let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
+    scene(&text, source, &files::folder_of(path)?, overrides)
+}
+
+fn scene(text: &str, source: &str, folder: &Path, overrides: &Overrides) -> Result<Opened> {
+    Ok(Opened { settings: parse(text, source, folder, overrides)?, notes: Vec::new() })
+}

@@ -1,0 +1,34 @@
+//! Scenes: the one settings struct, its file format, and what is built from it.
+//!
+//! ```text
+//! name --load--> text --parse--> settings --build--> transport::Scene
+//!         \----> bare volume --guess--/  \--save--> text
+//! ```
+
+mod build;
+pub mod cache;
+mod check;
+mod describe;
+mod embedded;
+mod files;
+mod frame;
+mod guess;
+pub mod keys;
+mod load;
+mod overrides;
+mod parse;
+mod rules;
+mod save;
+mod schema;
+pub mod settings;
+
+pub use build::{build, camera};
+pub use cache::VolumeCache;
+pub use describe::{FileDescription, GridDescription, VoxelDescription, describe};
+pub use embedded::DEFAULT_SCENE;
+pub use frame::frame;
+pub use load::{Opened, load, open};
+pub use overrides::Overrides;
+pub use parse::{apply, parse, tidy, validate};
+pub use save::{save, to_toml};
+pub use settings::Settings;

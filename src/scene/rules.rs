@@ -1,0 +1,146 @@
+//! What several values of a scene must be together: directions that point somewhere, placements
+//! that can be undone, a volume that is either a file or a shape.
+
+use glam::{Mat3, Vec3};
+
+use super::settings::{
+    CameraSettings, LightKind, LightSettings, RampKind, Settings, SurfaceSettings, SurfaceShape,
+    VolumeSettings, VolumeShape,
+};
+use crate::error::{Error, Result};
+
+/// Checks a scene whose single values are within their bounds.
+pub(super) fn check(settings: &Settings, source: &str) -> Result<()> {
+    let fail = |(field, reason): (String, String)| Error::invalid(source, field, reason);
+    let items = |list: &str, index: usize| {
+        let prefix = format!("{list}.{index}");
+        move |(key, reason): Fault| (format!("{prefix}.{key}"), reason)
+    };
+    camera(&settings.camera).map_err(|(key, reason)| fail((format!("camera.{key}"), reason)))?;
+    for (index, one) in settings.volume.iter().enumerate() {
+        volume(one).map_err(items("volume", index)).map_err(fail)?;
+    }
+    for (index, one) in settings.light.iter().enumerate() {
+        light(one).map_err(items("light", index)).map_err(fail)?;
+    }
+    for (index, one) in settings.surface.iter().enumerate() {
+        surface(one).map_err(items("surface", index)).map_err(fail)?;
+    }
+    Ok(())
+}
+
+/// A key and what is wrong with it.
+type Fault = (&'static str, String);
+
+fn fault(key: &'static str, reason: impl Into<String>) -> Result<(), Fault> {
+    Err((key, reason.into()))
+}
+
+fn camera(camera: &CameraSettings) -> Result<(), Fault> {
+    let forward = Vec3::from(camera.target) - Vec3::from(camera.position);
+    if forward.try_normalize().is_none() {
+        return fault("target", "target and position are the same point; move one of them");
+    }
+    direction("up", camera.up)?;
+    let side = forward.normalize().cross(Vec3::from(camera.up).normalize());
+    if side.length() < 1e-6 {
+        return fault("up", "up points along the view; choose another direction");
+    }
+    Ok(())
+}
+
+fn volume(volume: &VolumeSettings) -> Result<(), Fault> {
+    match (&volume.file, volume.shape) {
+        (None, None) => return fault("file", "a volume needs a file or a shape"),
+        (Some(_), Some(_)) => return fault("shape", "a volume has a file or a shape, not both"),
+        (Some(file), None) if file.is_empty() => {
+            return fault("file", "the name is empty; name a volume file");
+        }
+        _ => {}
+    }
+    placement(volume)?;
+    if volume.shape == Some(VolumeShape::Ramp) {
+        ramp(volume)?;
+    }
+    let stops = volume.emission.stops();
+    if stops.is_empty() {
+        return fault("emission.stops", "a ramp needs at least one stop [value, r, g, b]");
+    }
+    if stops.iter().zip(stops.iter().skip(1)).any(|(a, b)| a[0] >= b[0]) {
+        return fault("emission.stops", "the values of the stops must ascend");
+    }
+    if stops.iter().any(|[_, rgb @ ..]| rgb.iter().any(|channel| *channel < 0.0)) {
+        return fault("emission.stops", "a color is negative; the least is 0");
+    }
+    Ok(())
+}
+
+fn placement(volume: &VolumeSettings) -> Result<(), Fault> {
+    let Some(matrix) = volume.matrix else { return Ok(()) };
+    let other = VolumeSettings::default();
+    if (volume.translate, volume.rotate, volume.scale)
+        != (other.translate, other.rotate, other.scale)
+    {
+        return fault("matrix", "matrix replaces scale, rotate and translate; leave those out");
+    }
+    let rows = matrix.map(|[x, y, z, _]| Vec3::new(x, y, z));
+    let determinant = Mat3::from_cols(rows[0], rows[1], rows[2]).determinant();
+    let size: f32 = rows.iter().map(|row| row.length()).product();
+    if !(determinant.abs() > 1e-6 * size) {
+        return fault("matrix", "its first three columns flatten space; they must span it");
+    }
+    Ok(())
+}
+
+fn ramp(volume: &VolumeSettings) -> Result<(), Fault> {
+    let axis = volume.axis().index();
+    let far = 2.0 * volume.half_size().axes().get(axis).copied().unwrap_or(1.0);
+    let end = volume.a() + volume.b() * far;
+    if volume.kind() == RampKind::Linear && end < 0.0 {
+        let reason = format!("the ramp falls to {end} at its high face; the least density is 0");
+        return fault("b", reason);
+    }
+    Ok(())
+}
+
+fn light(light: &LightSettings) -> Result<(), Fault> {
+    match light.kind {
+        LightKind::Sun => direction("direction", light.direction()),
+        LightKind::Quad => quad(light.half_u(), light.half_v()),
+        LightKind::Spot if light.position() == light.target() => {
+            fault("target", "target and position are the same point; move one of them")
+        }
+        _ => Ok(()),
+    }
+}
+
+fn surface(surface: &SurfaceSettings) -> Result<(), Fault> {
+    match surface.shape {
+        SurfaceShape::Plane => {
+            if matches!(surface.half_size, Some(super::settings::Extent::Axes(_))) {
+                return fault("half_size", "expected one number: a plane is cut to a square");
+            }
+            direction("normal", surface.normal())
+        }
+        SurfaceShape::Quad => quad(surface.half_u(), surface.half_v()),
+        SurfaceShape::Box if surface.half_size.is_none() => {
+            fault("half_size", "a box needs a half_size, a number or [x, y, z]")
+        }
+        _ => Ok(()),
+    }
+}
+
+fn direction(key: &'static str, value: [f32; 3]) -> Result<(), Fault> {
+    match Vec3::from(value).try_normalize() {
+        Some(_) => Ok(()),
+        None => fault(key, "a direction must not be zero"),
+    }
+}
+
+fn quad(half_u: [f32; 3], half_v: [f32; 3]) -> Result<(), Fault> {
+    let (u, v) = (Vec3::from(half_u), Vec3::from(half_v));
+    if !(u.cross(v).length() > 1e-6 * u.length() * v.length()) {
+        return fault("half_v", "half_u and half_v must point along two different edges");
+    }
+    Ok(())
+}

@@ -1,0 +1,31 @@
+//! Settings to scene text: *save scene as*, and the scene in a snapshot's header.
+
+use std::path::Path;
+
+use super::{Settings, files};
+use crate::error::{Error, Result};
+
+/// The scene as TOML. With a folder, the files in it are named relative to that folder where
+/// that is possible; without, by their absolute names.
+///
+/// # Errors
+/// A value that TOML cannot hold; none of those that a scene file can set.
+pub fn to_toml(settings: &Settings, folder: Option<&Path>) -> Result<String> {
+    let mut settings = settings.clone();
+    if let Some(folder) = folder {
+        for file in settings.volume.iter_mut().filter_map(|volume| volume.file.as_mut()) {
+            *file = files::relative(file, folder);
+        }
+    }
+    toml::to_string(&settings).map_err(|e| Error::invalid("", "", e.to_string()))
+}
+
+/// Writes the scene so that loading it gives equal settings.
+///
+/// # Errors
+/// As [`to_toml`], or the system refuses to write.
+pub fn save(settings: &Settings, path: &Path) -> Result<()> {
+    super::validate(settings, &path.display().to_string())?;
+    let folder = files::folder_of(path)?;
+    files::write_whole(path, &to_toml(settings, Some(&folder))?)
+}

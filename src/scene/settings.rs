@@ -1,0 +1,66 @@
+//! The one settings struct. Its fields are the keys of the scene file, of `--set`, of a snapshot's
+//! header and of the window; its doc comments are the help that `flambeau keys` prints.
+//!
+//! What the fields cannot say in Rust is said in their schema: `range`, `minimum` and `maximum`
+//! bound every number of a key; `unit` names its unit; `default` is what an absent key means;
+//! `only` lists the choices (`shape = "sphere"`) that a key belongs to.
+
+/// A method for each optional key: its value, or the default that its schema names too.
+macro_rules! or_default {
+    (impl $settings:ty { $($key:ident: $type:ty = $default:expr;)* }) => {
+        impl $settings {
+            $(
+                #[doc = concat!("`", stringify!($key), "`, or its default.")]
+                pub fn $key(&self) -> $type {
+                    self.$key.unwrap_or($default)
+                }
+            )*
+        }
+    };
+}
+
+mod camera;
+mod emission;
+mod film;
+mod light;
+mod surface;
+mod values;
+mod volume;
+
+pub use camera::CameraSettings;
+pub use emission::{EmissionMode, EmissionSettings, Normalize};
+pub use film::{EnvironmentSettings, FilmSettings, PathSettings};
+pub use light::{LightKind, LightSettings};
+pub use surface::{MaterialKind, MaterialSettings, SurfaceSettings, SurfaceShape};
+pub use values::{Albedo, Axis, Color, Extent, GridKey};
+pub use volume::{DensitySettings, PhaseSettings, RampKind, VolumeSettings, VolumeShape};
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::transport::strategy::Strategy;
+
+/// A whole scene with its camera, film and strategy.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct Settings {
+    /// Where the picture is taken from.
+    pub camera: CameraSettings,
+    /// The picture itself.
+    pub film: FilmSettings,
+    /// How far paths go.
+    pub path: PathSettings,
+    /// The light that comes from everywhere around.
+    pub environment: EnvironmentSettings,
+    /// Fire, smoke, fog and clouds. Where they overlap, they add.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub volume: Vec<VolumeSettings>,
+    /// Lights beside the fire itself.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub light: Vec<LightSettings>,
+    /// Solid things: floors, walls, spheres, boxes.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub surface: Vec<SurfaceSettings>,
+    /// Which sampling strategies are on.
+    pub strategy: Strategy,
+}

@@ -1,0 +1,137 @@
+//! `emission` of a `[[volume]]`.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::Color;
+
+const SCALE: f32 = 1.0;
+const COLOR: Color = Color::Gray(1.0);
+const VALUE: Color = Color::Gray(1.0);
+const LE: Color = Color::Gray(1.0);
+const KELVIN_OFFSET: f32 = 0.0;
+const KELVIN_SCALE: f32 = 1.0;
+const INTENSITY: f32 = 1.0;
+const TIMES_DENSITY: bool = false;
+const NORMALIZE: Normalize = Normalize::Peak;
+const STOPS: [[f32; 4]; 2] = [[0.0; 4], [1.0; 4]];
+const REFERENCE_KELVIN: f32 = 1500.0;
+
+/// How a volume glows.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct EmissionSettings {
+    /// Where the glow comes from.
+    pub mode: EmissionMode,
+    /// The grid that the glow is read from: by default `emission` for mode grid, `temperature`
+    /// for blackbody, `flame` for ramp.
+    #[schemars(extend("default" = null, "only" = {"mode": ["grid", "blackbody", "ramp"]}))]
+    pub grid: Option<String>,
+    /// Emitted radiance per unit length = scale * value of the grid.
+    #[schemars(extend("unit" = "radiance/length", "minimum" = 0.0, "default" = SCALE))]
+    #[schemars(extend("only" = {"mode": ["grid"]}))]
+    pub scale: Option<f32>,
+    /// The color of a grid of single numbers.
+    #[schemars(extend("default" = COLOR, "only" = {"mode": ["grid"]}))]
+    pub color: Option<Color>,
+    /// Emitted radiance per unit length, the same all over the volume.
+    #[schemars(extend("unit" = "radiance/length", "default" = VALUE))]
+    #[schemars(extend("only" = {"mode": ["constant"]}))]
+    pub value: Option<Color>,
+    /// Source radiance: what a very thick layer of the volume would show.
+    #[schemars(extend("unit" = "radiance", "default" = LE, "only" = {"mode": ["source"]}))]
+    pub le: Option<Color>,
+    /// Taken from the grid's value before it is scaled to kelvin.
+    #[schemars(extend("default" = KELVIN_OFFSET, "only" = {"mode": ["blackbody"]}))]
+    pub kelvin_offset: Option<f32>,
+    /// Kelvin = (value - kelvin_offset) * kelvin_scale. Files in kelvin need 1; Blender's
+    /// temperature of 0 to 3 needs about 1000.
+    #[schemars(extend("unit" = "kelvin", "minimum" = 0.0, "default" = KELVIN_SCALE))]
+    #[schemars(extend("only" = {"mode": ["blackbody"]}))]
+    pub kelvin_scale: Option<f32>,
+    /// How bright the glow is.
+    #[schemars(extend("unit" = "radiance/length", "minimum" = 0.0, "default" = INTENSITY))]
+    #[schemars(extend("only" = {"mode": ["blackbody", "ramp"]}))]
+    pub intensity: Option<f32>,
+    /// Whether the glow is multiplied by the density grid's value, so that thin smoke glows less.
+    #[schemars(extend("default" = TIMES_DENSITY, "only" = {"mode": ["blackbody", "ramp"]}))]
+    pub times_density: Option<bool>,
+    /// `peak`: every temperature equally bright, only its color changes; `t4`: brightness grows
+    /// with the fourth power of the temperature, as it does in nature.
+    #[schemars(extend("default" = NORMALIZE, "only" = {"mode": ["blackbody"]}))]
+    pub normalize: Option<Normalize>,
+    /// With `normalize = "t4"`: the temperature whose brightness stays as it is.
+    #[schemars(extend("unit" = "kelvin", "exclusiveMinimum" = 0.0, "default" = REFERENCE_KELVIN))]
+    #[schemars(extend("only" = {"mode": ["blackbody"]}))]
+    pub reference_kelvin: Option<f32>,
+    /// Color stops [value, r, g, b] in ascending order of value; linear between them, held
+    /// beyond the ends.
+    #[schemars(extend("label" = "[[value, r, g, b], ...]", "unit" = "radiance/length"))]
+    #[schemars(extend("default" = STOPS))]
+    #[schemars(extend("only" = {"mode": ["ramp"]}))]
+    pub stops: Option<Vec<[f32; 4]>>,
+}
+
+/// Where a volume's glow comes from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum EmissionMode {
+    /// It does not glow.
+    #[default]
+    None,
+    /// Read from a grid, untouched by density and albedo.
+    Grid,
+    /// The same all over the volume.
+    Constant,
+    /// In proportion to the absorption.
+    Source,
+    /// From a temperature, as a black body.
+    Blackbody,
+    /// From a grid through a color ramp.
+    Ramp,
+}
+
+/// How the brightness of a black body depends on its temperature.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Normalize {
+    /// Every temperature has the same peak.
+    #[default]
+    Peak,
+    /// Proportional to (T / reference_kelvin)^4.
+    T4,
+}
+
+impl EmissionMode {
+    /// The grid of a file that the mode reads unless said otherwise; `None` if it reads none.
+    pub fn default_grid(self) -> Option<&'static str> {
+        match self {
+            Self::Grid => Some("emission"),
+            Self::Blackbody => Some("temperature"),
+            Self::Ramp => Some("flame"),
+            Self::None | Self::Constant | Self::Source => None,
+        }
+    }
+}
+
+or_default! {
+    impl EmissionSettings {
+        scale: f32 = SCALE;
+        color: Color = COLOR;
+        value: Color = VALUE;
+        le: Color = LE;
+        kelvin_offset: f32 = KELVIN_OFFSET;
+        kelvin_scale: f32 = KELVIN_SCALE;
+        intensity: f32 = INTENSITY;
+        times_density: bool = TIMES_DENSITY;
+        normalize: Normalize = NORMALIZE;
+        reference_kelvin: f32 = REFERENCE_KELVIN;
+    }
+}
+
+impl EmissionSettings {
+    /// `stops`, or its default.
+    pub fn stops(&self) -> &[[f32; 4]] {
+        self.stops.as_deref().unwrap_or(&STOPS)
+    }
+}

@@ -1,0 +1,46 @@
+//! `[film]`, `[path]` and `[environment]`.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::Color;
+
+/// The picture: its size and how long it is sampled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct FilmSettings {
+    /// Width and height. The window takes its own size unless told to keep this one.
+    #[schemars(extend("unit" = "pixels", "minimum" = 1, "maximum" = 16384))]
+    pub size: [u32; 2],
+    /// Another seed gives the same picture with other noise.
+    #[schemars(range(min = 0, max = 9_223_372_036_854_775_807_i64))]
+    pub seed: u64,
+    /// Samples per pixel after which the picture is finished; 0 goes on until stopped.
+    #[schemars(extend("unit" = "samples"), range(min = 0, max = 4_294_967_295_u32))]
+    pub spp: u32,
+}
+
+impl Default for FilmSettings {
+    fn default() -> Self {
+        Self { size: [960, 540], seed: 0, spp: 0 }
+    }
+}
+
+/// How far paths go.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct PathSettings {
+    /// The number of real scattering events and reflections after which a path ends; 0 lets paths
+    /// end by themselves (a guard at 100 000 is counted and shown).
+    #[schemars(extend("unit" = "events"), range(min = 0, max = 100_000))]
+    pub max_scatters: u32,
+}
+
+/// The light that comes from everywhere around.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct EnvironmentSettings {
+    /// The same radiance from every direction.
+    #[schemars(extend("unit" = "radiance"))]
+    pub radiance: Color,
+}

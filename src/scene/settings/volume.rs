@@ -1,0 +1,196 @@
+//! `[[volume]]`.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{Albedo, Axis, Color, EmissionSettings, Extent};
+
+const HALF_SIZE: Extent = Extent::Uniform(1.0);
+const RADIUS: f32 = 1.0;
+const AXIS: Axis = Axis::Z;
+const KIND: RampKind = RampKind::Linear;
+const A: f32 = 1.0;
+const B: f32 = 0.0;
+const H: f32 = 1.0;
+const FREQUENCY: f32 = 1.0;
+const OCTAVES: u32 = 4;
+const CONTRAST: f32 = 1.0;
+const SEED: u32 = 0;
+
+/// One volume: a file or a shape, where it stands and how it looks.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct VolumeSettings {
+    /// A name to tell volumes apart; means nothing to the picture.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    #[schemars(extend("default" = ""))]
+    pub name: String,
+    /// A volume file, relative to the scene file, or `builtin:NAME` for one of Flambeau's own.
+    pub file: Option<String>,
+    /// A shape instead of a file, filled with value 1 unless said otherwise.
+    pub shape: Option<VolumeShape>,
+
+    /// Moves the volume; applied after `rotate`.
+    #[schemars(extend("unit" = "length", "default" = [0.0, 0.0, 0.0]))]
+    #[serde(skip_serializing_if = "is_default")]
+    pub translate: [f32; 3],
+    /// Turns the volume about the x, then the y, then the z axis; applied after `scale`.
+    #[schemars(extend("unit" = "degrees", "default" = [0.0, 0.0, 0.0]))]
+    #[serde(skip_serializing_if = "is_default")]
+    pub rotate: [f32; 3],
+    /// Makes the volume larger or smaller. Density does not change with it.
+    #[schemars(extend("nonzero" = true, "default" = 1.0))]
+    #[serde(skip_serializing_if = "is_default")]
+    pub scale: Extent,
+    /// The whole placement as 3 rows of 4, in place of `scale`, `rotate` and `translate`.
+    #[schemars(extend("default" = null))]
+    pub matrix: Option<[[f32; 4]; 3]>,
+
+    /// How thick the volume is.
+    pub density: DensitySettings,
+    /// The share of light that smoke scatters instead of swallowing: 0 is soot, 1 is cloud.
+    pub albedo: Albedo,
+    /// Where scattered light goes.
+    #[serde(skip_serializing_if = "is_default")]
+    pub phase: PhaseSettings,
+    /// How the volume glows.
+    #[serde(skip_serializing_if = "is_default")]
+    pub emission: EmissionSettings,
+
+    /// Half the edges of the box that is filled, about the volume's own origin.
+    #[schemars(extend("unit" = "length", "exclusiveMinimum" = 0.0, "default" = HALF_SIZE))]
+    #[schemars(extend("only" = {"shape": ["box", "ramp", "noise"]}))]
+    pub half_size: Option<Extent>,
+    /// The radius of the sphere that is filled, about the volume's own origin.
+    #[schemars(extend("unit" = "length", "exclusiveMinimum" = 0.0, "default" = RADIUS))]
+    #[schemars(extend("only" = {"shape": ["sphere"]}))]
+    pub radius: Option<f32>,
+    /// The axis along which the ramp changes. Its coordinate starts at the box's low face.
+    #[schemars(extend("default" = AXIS, "only" = {"shape": ["ramp"]}))]
+    pub axis: Option<Axis>,
+    /// `linear`: a + b * coordinate; `exponential`: a * exp(-coordinate / h).
+    #[schemars(extend("default" = KIND, "only" = {"shape": ["ramp"]}))]
+    pub kind: Option<RampKind>,
+    /// The ramp's value at the low face.
+    #[schemars(extend("minimum" = 0.0, "default" = A, "only" = {"shape": ["ramp"]}))]
+    pub a: Option<f32>,
+    /// The linear ramp's change per unit length.
+    #[schemars(extend("unit" = "1/length", "default" = B))]
+    #[schemars(extend("only" = {"shape": ["ramp"], "kind": ["linear"]}))]
+    pub b: Option<f32>,
+    /// The length over which the exponential ramp falls to 37 percent.
+    #[schemars(extend("unit" = "length", "exclusiveMinimum" = 0.0, "default" = H))]
+    #[schemars(extend("only" = {"shape": ["ramp"], "kind": ["exponential"]}))]
+    pub h: Option<f32>,
+    /// How many large puffs fit into one unit of length.
+    #[schemars(extend("unit" = "1/length", "exclusiveMinimum" = 0.0, "default" = FREQUENCY))]
+    #[schemars(extend("only" = {"shape": ["noise"]}))]
+    pub frequency: Option<f32>,
+    /// How many layers of ever finer detail the noise has.
+    #[schemars(extend("minimum" = 1, "maximum" = 12, "default" = OCTAVES))]
+    #[schemars(extend("only" = {"shape": ["noise"]}))]
+    pub octaves: Option<u32>,
+    /// 0 is an even fog; larger values leave puffs with clear air between them.
+    #[schemars(extend("minimum" = 0.0, "maximum" = 100.0, "default" = CONTRAST))]
+    #[schemars(extend("only" = {"shape": ["noise"]}))]
+    pub contrast: Option<f32>,
+    /// Another seed gives other puffs.
+    #[schemars(extend("minimum" = 0, "maximum" = 4_294_967_295_u32, "default" = SEED))]
+    #[schemars(extend("only" = {"shape": ["noise"]}))]
+    pub seed: Option<u32>,
+}
+
+/// What is filled in place of a file's grids.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum VolumeShape {
+    /// A box.
+    Box,
+    /// A ball.
+    Sphere,
+    /// All of space.
+    Everywhere,
+    /// A box whose value changes along one axis.
+    Ramp,
+    /// A box of procedural puffs.
+    Noise,
+}
+
+/// How the value of a ramp changes along its axis.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum RampKind {
+    /// a + b * coordinate.
+    #[default]
+    Linear,
+    /// a * exp(-coordinate / h).
+    Exponential,
+}
+
+/// How thick a volume is.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct DensitySettings {
+    /// The grid that the extinction is read from.
+    #[schemars(extend("default" = "density"))]
+    pub grid: Option<String>,
+    /// Extinction per unit length = scale * value of the grid. 0 makes the smoke vanish.
+    #[schemars(extend("unit" = "1/length"))]
+    pub scale: Color,
+}
+
+/// Where scattered light goes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct PhaseSettings {
+    /// Henyey-Greenstein's mean cosine: 0 scatters evenly, towards 1 light goes on forwards,
+    /// towards -1 it turns back.
+    #[schemars(range(min = -0.999, max = 0.999))]
+    pub g: f32,
+}
+
+impl Default for DensitySettings {
+    fn default() -> Self {
+        Self { grid: None, scale: Color::Gray(1.0) }
+    }
+}
+
+impl VolumeSettings {
+    /// The one grid of a shape, and the grid that density is read from unless said otherwise.
+    pub const DENSITY: &'static str = "density";
+
+    /// The grid that density is read from.
+    pub fn density_grid(&self) -> &str {
+        self.density.grid.as_deref().unwrap_or(Self::DENSITY)
+    }
+
+    /// The grid that emission is read from, if its mode reads one.
+    pub fn emission_grid(&self) -> Option<&str> {
+        let default = if self.file.is_some() {
+            self.emission.mode.default_grid()?
+        } else {
+            self.emission.mode.default_grid().map(|_| Self::DENSITY)?
+        };
+        Some(self.emission.grid.as_deref().unwrap_or(default))
+    }
+}
+
+or_default! {
+    impl VolumeSettings {
+        half_size: Extent = HALF_SIZE;
+        radius: f32 = RADIUS;
+        axis: Axis = AXIS;
+        kind: RampKind = KIND;
+        a: f32 = A;
+        b: f32 = B;
+        h: f32 = H;
+        frequency: f32 = FREQUENCY;
+        octaves: u32 = OCTAVES;
+        contrast: f32 = CONTRAST;
+        seed: u32 = SEED;
+    }
+}
+
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}

@@ -1,0 +1,80 @@
+//! How light moves through volumes: the strategies and the paths they sample. Read `path` first.
+
+pub mod camera;
+pub mod direct;
+pub mod observer;
+pub mod path;
+pub mod scene;
+pub mod strategy;
+pub mod tracking;
+pub mod vertex;
+
+use std::sync::Arc;
+
+use glam::{UVec2, Vec2};
+
+pub use scene::Scene;
+
+use crate::math::{PathRng, Rgb};
+use observer::{Nobody, Observer};
+
+/// What one path brought to its pixel: four parts that sum to the beauty, and what else is kept.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PathSample {
+    /// Volume emission seen on the camera ray.
+    pub emission: Rgb,
+    /// Environment and emitting surfaces seen directly.
+    pub background: Rgb,
+    /// Light after one scattering event or reflection.
+    pub direct: Rgb,
+    /// Light after more of them.
+    pub indirect: Rgb,
+    /// 1 − transmittance to the background; 1 on surfaces.
+    pub alpha: f32,
+    /// Distance of the first event or surface, if there was one.
+    pub depth: Option<f32>,
+    /// Tentative collisions of all walks of the path.
+    pub tracking_steps: u32,
+    /// Whether the path was cut at [`path::GUARD`] events.
+    pub guard_hit: bool,
+}
+
+impl PathSample {
+    /// All light of the path.
+    pub fn beauty(&self) -> Rgb {
+        self.emission + self.background + self.direct + self.indirect
+    }
+}
+
+/// Anything that can sample a pixel: film and session know nothing more.
+pub trait PixelSampler: Send + Sync {
+    /// The path of this sample of this pixel; the same arguments give the same path.
+    fn sample(&self, pixel: UVec2, sample: u32) -> PathSample;
+}
+
+/// A scene framed on a film.
+#[derive(Clone, Debug)]
+pub struct Frame {
+    /// What is seen.
+    pub scene: Arc<Scene>,
+    /// Pixels across and down.
+    pub size: UVec2,
+    /// Chooses the random numbers of the whole picture.
+    pub seed: u64,
+}
+
+impl Frame {
+    /// Follows one path and shows each of its steps to `observer`.
+    pub fn trace(&self, pixel: UVec2, sample: u32, observer: &mut impl Observer) -> PathSample {
+        let mut rng = PathRng::new(self.seed, pixel, sample);
+        let offset = Vec2::new(rng.uniform(), rng.uniform());
+        let ray = self.scene.camera.ray(self.size, pixel, offset);
+        path::trace(&self.scene, ray, &mut rng, observer)
+    }
+}
+
+impl PixelSampler for Frame {
+    fn sample(&self, pixel: UVec2, sample: u32) -> PathSample {
+        self.trace(pixel, sample, &mut Nobody)
+    }
+}

@@ -1,0 +1,368 @@
+//! Null-collision tracking: the one loop that walks tentative collisions, and the three walks that
+//! use it.
+//!
+//! A heterogeneous medium is filled up with fictitious matter μ_n = μ̄ − μ_t to a piecewise constant
+//! majorant μ̄, in which distances to collisions are exponential. With T̄ the transmittance of μ̄,
+//! L = ∫ T̄ [ε + μ_s L_s + μ_n L] dt + T̄(d) L_end (Miller et al. 2019, eq. 10, with emission), and
+//! each walk below is a Monte Carlo reading of it. All are unbiased: the majorants hold
+//! everywhere, and roulette compensates for what it ends.
+
+use std::ops::ControlFlow;
+
+use super::strategy::{BoostMode, Strategy};
+use crate::{
+    math::{PathRng, Rgb, mean},
+    volume::{
+        medium::{Coefficients, Segment},
+        phase::PhaseMix,
+        world::MediumRay,
+    },
+};
+
+/// Least collisions along a volume's brightest chord where emission is gathered by collisions, and
+/// least absorptions where it is gathered by those, so that fire without soot is found at all.
+const EMISSION_FLOOR: f32 = 0.1;
+/// Below this weight a walk of transmittance goes on by chance only.
+const ROULETTE_BELOW: f32 = 0.05;
+
+/// What a walk does on its way.
+trait Walk {
+    /// The rate of tentative collisions μ̄ in a segment, at least its majorant.
+    fn rate(&self, segment: &Segment) -> f32;
+
+    /// Crosses a uniform segment in closed form; false to be given its collisions instead.
+    fn cross(&mut self, _medium: &MediumRay, _segment: &Segment) -> bool {
+        false
+    }
+
+    /// A tentative collision under the majorant [`Collision::rate`].
+    fn collide(&mut self, medium: &MediumRay, at: &Collision, rng: &mut PathRng)
+    -> ControlFlow<()>;
+}
+
+/// A tentative collision.
+struct Collision<'s> {
+    /// Where it is, as a ray parameter.
+    t: f32,
+    /// The majorant μ̄ it was drawn under.
+    rate: f32,
+    /// The segment it lies in.
+    segment: &'s Segment,
+}
+
+/// Calls `walk` for each tentative collision along the medium, from near to far, and returns how
+/// many there were. A step that lands beyond the end of its segment is no collision.
+fn track(mut medium: MediumRay, rng: &mut PathRng, walk: &mut impl Walk) -> u32 {
+    let mut collisions = 0;
+    let mut optical_distance = rng.exponential();
+    while let Some(segment) = medium.next_segment() {
+        if segment.uniform && walk.cross(&medium, &segment) {
+            continue;
+        }
+        let rate = walk.rate(&segment);
+        if rate <= 0.0 {
+            continue;
+        }
+        let mut t = segment.t0;
+        loop {
+            let step = optical_distance / rate;
+            if t + step >= segment.t1 {
+                optical_distance = (optical_distance - rate * (segment.t1 - t)).max(0.0);
+                break;
+            }
+            t += step;
+            collisions += 1;
+            let at = Collision { t, rate, segment: &segment };
+            if walk.collide(&medium, &at, rng).is_break() {
+                return collisions;
+            }
+            optical_distance = rng.exponential();
+        }
+    }
+    collisions
+}
+
+/// μ_n = μ̄ − μ_t per channel. Never below zero: at a border of cells rounding may read the
+/// neighbor's coefficient.
+#[inline]
+fn null_coefficient(rate: f32, mu_t: Rgb) -> Rgb {
+    (Rgb::splat(rate) - mu_t).max(Rgb::ZERO)
+}
+
+/// Ends a walk of small weight by chance, and makes up for it where it goes on.
+#[inline]
+fn roulette(weight: &mut Rgb, rng: &mut PathRng) -> ControlFlow<()> {
+    let largest = weight.max_element();
+    if largest >= ROULETTE_BELOW {
+        return ControlFlow::Continue(());
+    }
+    let survival = largest / ROULETTE_BELOW;
+    if rng.uniform() >= survival {
+        *weight = Rgb::ZERO;
+        return ControlFlow::Break(());
+    }
+    *weight /= survival;
+    ControlFlow::Continue(())
+}
+
+/// exp(−τ) per channel; an infinite path through nothing is clear.
+fn exp_neg(mu_t: Rgb, length: f32) -> Rgb {
+    let clear = mu_t.cmpeq(Rgb::ZERO);
+    Rgb::select(clear, Rgb::ONE, (-mu_t * length).exp())
+}
+
+/// Ratio tracking (Novák et al. 2014, eq. 12): an estimate of the transmittance along the medium,
+/// the product of μ_n/μ̄ over all tentative collisions; closed form in uniform segments.
+/// Also returns the number of collisions.
+pub fn transmittance(medium: MediumRay, rng: &mut PathRng) -> (Rgb, u32) {
+    struct Ratio {
+        weight: Rgb,
+    }
+    impl Walk for Ratio {
+        fn rate(&self, segment: &Segment) -> f32 {
+            segment.majorant
+        }
+        fn cross(&mut self, medium: &MediumRay, segment: &Segment) -> bool {
+            let mu_t = medium.coefficients(segment.t0).mu_t;
+            self.weight *= exp_neg(mu_t, segment.t1 - segment.t0);
+            true
+        }
+        fn collide(
+            &mut self,
+            medium: &MediumRay,
+            at: &Collision,
+            rng: &mut PathRng,
+        ) -> ControlFlow<()> {
+            self.weight *= null_coefficient(at.rate, medium.coefficients(at.t).mu_t) / at.rate;
+            roulette(&mut self.weight, rng)
+        }
+    }
+    let mut walk = Ratio { weight: Rgb::ONE };
+    let collisions = track(medium, rng, &mut walk);
+    (walk.weight, collisions)
+}
+
+/// What an emission walk brings back.
+#[derive(Clone, Copy, Debug)]
+pub struct Glow {
+    /// ∫ T ε dt along the ray.
+    pub emission: Rgb,
+    /// T to the ray's end.
+    pub transmittance: Rgb,
+    /// Tentative collisions on the way.
+    pub collisions: u32,
+}
+
+/// Emission ratio tracking (Huang et al. 2021, algorithm 1): a walk of its own with P_n = 1 that
+/// neither scatters nor is absorbed. At each tentative collision L += w ε/μ̄, then w ·= μ_n/μ̄;
+/// closed form in uniform segments.
+pub fn emission(medium: MediumRay, strategy: &Strategy, rng: &mut PathRng) -> Glow {
+    struct EmissionRatio<'s> {
+        strategy: &'s Strategy,
+        weight: Rgb,
+        emission: Rgb,
+    }
+    impl Walk for EmissionRatio<'_> {
+        fn rate(&self, segment: &Segment) -> f32 {
+            emission_rate(self.strategy, segment)
+        }
+        fn cross(&mut self, medium: &MediumRay, segment: &Segment) -> bool {
+            let c = medium.coefficients(segment.t0);
+            let length = segment.t1 - segment.t0;
+            self.emission += self.weight * c.emission * mean_free_length(c.mu_t, length);
+            self.weight *= exp_neg(c.mu_t, length);
+            true
+        }
+        fn collide(
+            &mut self,
+            medium: &MediumRay,
+            at: &Collision,
+            rng: &mut PathRng,
+        ) -> ControlFlow<()> {
+            let c = medium.coefficients(at.t);
+            self.emission += self.weight * c.emission / at.rate;
+            self.weight *= null_coefficient(at.rate, c.mu_t) / at.rate;
+            roulette(&mut self.weight, rng)
+        }
+    }
+    let mut walk = EmissionRatio { strategy, weight: Rgb::ONE, emission: Rgb::ZERO };
+    let collisions = track(medium, rng, &mut walk);
+    Glow { emission: walk.emission, transmittance: walk.weight, collisions }
+}
+
+/// ∫₀^length exp(−μ_t t) dt per channel.
+fn mean_free_length(mu_t: Rgb, length: f32) -> Rgb {
+    let of = |mu: f32| {
+        let tau = mu * length;
+        if tau < 1e-4 { length * (1.0 - 0.5 * tau) } else { -(-tau).exp_m1() / mu }
+    };
+    Rgb::new(of(mu_t.x), of(mu_t.y), of(mu_t.z))
+}
+
+/// The majorant of a walk that gathers emission by collisions: μ̄ = max(maj μ_t, boost · maj ε),
+/// the boosted part at most one collision per voxel unless it is taken literally (Huang et al.
+/// 2021, section 2). It never goes below maj μ_t, nor below a floor wherever something emits.
+fn emission_rate(strategy: &Strategy, segment: &Segment) -> f32 {
+    let advanced = &strategy.advanced;
+    let floor = EMISSION_FLOOR * segment.emission_rate;
+    let base = segment.majorant.max(floor);
+    if !strategy.majorant_boost {
+        return base;
+    }
+    let wanted = advanced.boost_amount * segment.emission_rate;
+    let most = segment.voxel_rate / advanced.boost_clamp_voxels;
+    match advanced.boost_mode {
+        BoostMode::Clamped if most > 0.0 => base.max(wanted.min(most)),
+        BoostMode::Clamped | BoostMode::Literal => base.max(wanted),
+    }
+}
+
+/// Where the scattering walk gathers emission.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Gather {
+    /// On absorption, which ends the path (the baseline).
+    Absorption,
+    /// At every tentative collision (decoupled).
+    EveryCollision,
+    /// Nowhere: the emission has its own walk.
+    Nothing,
+}
+
+impl Gather {
+    /// What the toggles ask of the scattering walk; ratio tracking overrides decoupling.
+    pub fn of(strategy: &Strategy) -> Self {
+        if strategy.emission_ratio_tracking {
+            Self::Nothing
+        } else if strategy.emission_decoupling {
+            Self::EveryCollision
+        } else {
+            Self::Absorption
+        }
+    }
+}
+
+/// How a flight through the medium ended.
+#[derive(Clone, Debug)]
+pub enum Event {
+    /// It reached the end of the ray.
+    Reached,
+    /// It was absorbed.
+    Absorbed {
+        /// Where.
+        t: f32,
+    },
+    /// It scatters.
+    Scattered {
+        /// Where.
+        t: f32,
+        /// Into which directions.
+        phase: PhaseMix,
+    },
+}
+
+/// One flight of the scattering walk.
+#[derive(Clone, Debug)]
+pub struct Flight {
+    /// How it ended.
+    pub event: Event,
+    /// Factor of the path's throughput up to and including the event.
+    pub weight: Rgb,
+    /// Emission gathered on the way, by the mode it was asked for.
+    pub emission: Rgb,
+    /// Tentative collisions on the way.
+    pub collisions: u32,
+}
+
+/// The scattering walk: at each tentative collision one of absorption, scattering and null is
+/// chosen with P ∝ the channels' mean of w·μ, so that the throughput stays near one color and the
+/// factors μ/(μ̄ P) near 1 (Kutz et al. 2017, section 5.1, history-aware probabilities).
+pub fn scatter(
+    medium: MediumRay,
+    strategy: &Strategy,
+    throughput: Rgb,
+    rng: &mut PathRng,
+) -> Flight {
+    let gather = Gather::of(strategy);
+    let mut walk = Scattering {
+        strategy,
+        gather,
+        throughput,
+        weight: Rgb::ONE,
+        emission: Rgb::ZERO,
+        event: Event::Reached,
+    };
+    let collisions = track(medium, rng, &mut walk);
+    Flight { event: walk.event, weight: walk.weight, emission: walk.emission, collisions }
+}
+
+struct Scattering<'s> {
+    strategy: &'s Strategy,
+    gather: Gather,
+    /// The path's throughput before the flight; only its color matters here.
+    throughput: Rgb,
+    weight: Rgb,
+    emission: Rgb,
+    event: Event,
+}
+
+impl Walk for Scattering<'_> {
+    fn rate(&self, segment: &Segment) -> f32 {
+        match self.gather {
+            Gather::Nothing => segment.majorant,
+            Gather::EveryCollision => emission_rate(self.strategy, segment),
+            Gather::Absorption => segment.majorant.max(EMISSION_FLOOR * segment.emission_rate),
+        }
+    }
+
+    fn collide(
+        &mut self,
+        medium: &MediumRay,
+        at: &Collision,
+        rng: &mut PathRng,
+    ) -> ControlFlow<()> {
+        let &Collision { t, rate, .. } = at;
+        let c = medium.coefficients(t);
+        if self.gather == Gather::EveryCollision {
+            self.emission += self.weight * c.emission / rate;
+        }
+        let mu_n = null_coefficient(rate, c.mu_t);
+        let absorb = self.absorption_share(&c, at.segment);
+        let color = self.throughput * self.weight;
+        let [a, s, n] = [absorb, c.mu_s, mu_n].map(|mu| mean(color * mu));
+        let total = a + s + n;
+        if total <= 0.0 {
+            self.weight = Rgb::ZERO;
+            self.event = Event::Absorbed { t };
+            return ControlFlow::Break(());
+        }
+        let u = rng.uniform() * total;
+        if u < n {
+            self.weight *= mu_n * (total / (rate * n));
+            return ControlFlow::Continue(());
+        }
+        if u < n + s {
+            self.weight *= c.mu_s * (total / (rate * s));
+            self.event = Event::Scattered { t, phase: medium.phase(t) };
+        } else {
+            if self.gather == Gather::Absorption {
+                self.emission += self.weight * c.emission * (total / (rate * a));
+            }
+            self.event = Event::Absorbed { t };
+        }
+        ControlFlow::Break(())
+    }
+}
+
+impl Scattering<'_> {
+    /// μ_a, or where absorption alone shows the emission, enough of it to show: ε may be positive
+    /// with little or no μ_a. The other events make up for the share by their weights, so that
+    /// the floor absorbs nothing by itself.
+    fn absorption_share(&self, c: &Coefficients, segment: &Segment) -> Rgb {
+        let mu_a = c.mu_a();
+        if self.gather == Gather::Absorption && c.emission.max_element() > 0.0 {
+            mu_a.max(Rgb::splat(EMISSION_FLOOR * segment.emission_rate))
+        } else {
+            mu_a
+        }
+    }
+}

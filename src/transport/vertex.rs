@@ -1,0 +1,86 @@
+//! A vertex of a path, on a surface or in a volume, behind one face: a value and a density for a
+//! direction, and a sample of it.
+
+use glam::{Vec2, Vec3A};
+
+use crate::{
+    math::{PathRng, Ray, Rgb},
+    surface::{Bsdf, Hit},
+    volume::phase::PhaseMix,
+};
+
+/// A place where a path turns.
+#[derive(Clone, Debug)]
+pub struct Vertex {
+    /// Where it is.
+    pub position: Vec3A,
+    kind: Kind,
+}
+
+#[derive(Clone, Debug)]
+enum Kind {
+    Volume { phase: PhaseMix, forward: Vec3A },
+    Surface { bsdf: Bsdf, offset: f32 },
+}
+
+/// A direction drawn at a vertex.
+#[derive(Clone, Copy, Debug)]
+pub struct Turn {
+    /// The unit direction.
+    pub direction: Vec3A,
+    /// Value over density.
+    pub weight: Rgb,
+    /// Density over solid angle.
+    pub pdf_solid_angle: f32,
+}
+
+impl Vertex {
+    /// A scattering event of a path that came along the unit `forward`.
+    pub fn volume(position: Vec3A, forward: Vec3A, phase: PhaseMix) -> Self {
+        Self { position, kind: Kind::Volume { phase, forward } }
+    }
+
+    /// A reflection.
+    pub fn surface(hit: &Hit, bsdf: Bsdf) -> Self {
+        Self { position: hit.point, kind: Kind::Surface { bsdf, offset: hit.offset() } }
+    }
+
+    /// Whether it lies on a surface.
+    pub fn is_surface(&self) -> bool {
+        matches!(self.kind, Kind::Surface { .. })
+    }
+
+    /// The share of light from the unit `direction` that goes on along the path (for a surface
+    /// with its cosine), and the density [`Vertex::sample`] draws it with.
+    pub fn eval(&self, direction: Vec3A) -> (Rgb, f32) {
+        match &self.kind {
+            Kind::Volume { phase, forward } => phase.eval(*forward, direction),
+            Kind::Surface { bsdf, .. } => bsdf.eval(direction),
+        }
+    }
+
+    /// Draws the direction the path goes on along; `None` where it ends.
+    pub fn sample(&self, rng: &mut PathRng) -> Option<Turn> {
+        let (pick, u) = (rng.uniform(), Vec2::new(rng.uniform(), rng.uniform()));
+        let direction = match &self.kind {
+            Kind::Volume { phase, forward } => phase.sample(*forward, pick, u),
+            Kind::Surface { bsdf, .. } => bsdf.sample(u)?,
+        };
+        let (value, pdf_solid_angle) = self.eval(direction);
+        (pdf_solid_angle > 0.0).then(|| Turn {
+            direction,
+            weight: value / pdf_solid_angle,
+            pdf_solid_angle,
+        })
+    }
+
+    /// The ray that leaves along `direction` without meeting the surface it starts on.
+    pub fn ray(&self, direction: Vec3A) -> Ray {
+        match &self.kind {
+            Kind::Volume { .. } => Ray::new(self.position, direction),
+            Kind::Surface { bsdf, offset } => {
+                Ray::new(self.position + *offset * bsdf.normal(), direction)
+            }
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! One volume in its own space: where it is, what it holds and how large that gets.
+
+use glam::{IVec3, Vec3A};
+
+use super::{
+    emission::Emission,
+    field::{RgbField, ScalarField},
+    majorant::{Majorant, MajorantGrid},
+    medium::Coefficients,
+};
+use crate::math::{Aabb, Ray, Rgb, luminance};
+
+/// Where a volume is, in its own space. Its borders are sharp.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Region {
+    /// A box.
+    Box(Aabb),
+    /// A sphere about the origin.
+    Sphere {
+        /// Its radius.
+        radius: f32,
+    },
+    /// All of space.
+    Everywhere,
+}
+
+impl Region {
+    /// The smallest box around it; infinite for [`Region::Everywhere`].
+    pub fn bounds(&self) -> Aabb {
+        match self {
+            Self::Box(bounds) => *bounds,
+            Self::Sphere { radius } => Aabb::centered(Vec3A::splat(*radius)),
+            Self::Everywhere => Aabb::centered(Vec3A::INFINITY),
+        }
+    }
+
+    /// The part of (0, t_max) that `ray` spends inside; its direction need not be a unit vector.
+    pub fn intersect(&self, ray: &Ray, t_max: f32) -> Option<(f32, f32)> {
+        match self {
+            Self::Box(bounds) => bounds.intersect(ray, 0.0, t_max),
+            Self::Sphere { radius } => {
+                let a = ray.direction.length_squared();
+                let middle = -ray.origin.dot(ray.direction) / a;
+                let nearest = ray.at(middle);
+                let half_squared = (radius * radius - nearest.length_squared()) / a;
+                if half_squared <= 0.0 {
+                    return None;
+                }
+                let half = half_squared.sqrt();
+                let (t0, t1) = ((middle - half).max(0.0), (middle + half).min(t_max));
+                (t0 < t1).then_some((t0, t1))
+            }
+            Self::Everywhere => (t_max > 0.0).then_some((0.0, t_max)),
+        }
+    }
+}
+
+/// What a volume is made of. Coefficients are per unit of *world* length, whatever its placement.
+#[derive(Clone, Debug)]
+pub struct Substance {
+    /// The density field; μ_t = `density_scale` · value.
+    pub density: ScalarField,
+    /// Multiplier of the density, per channel.
+    pub density_scale: Rgb,
+    /// Single-scattering albedo μ_s / μ_t, 0 to 1.
+    pub albedo: RgbField,
+    /// Mean cosine of its Henyey–Greenstein phase function.
+    pub g: f32,
+    /// What it radiates.
+    pub emission: Emission,
+}
+
+impl Substance {
+    /// The coefficients at a point of the volume's space.
+    #[inline]
+    pub fn at(&self, local: Vec3A) -> Coefficients {
+        let density = self.density.at(local).max(0.0);
+        let mu_t = self.density_scale * density;
+        let mu_s = self.albedo.at(local).clamp(Rgb::ZERO, Rgb::ONE) * mu_t;
+        let emission = self.emission.at(local, mu_t - mu_s, density);
+        Coefficients { mu_t, mu_s, emission }
+    }
+
+    fn majorant_over(&self, local: &Aabb) -> Majorant {
+        let density = self.density.range(local).1.max(0.0);
+        let mu_t = self.density_scale * density;
+        let emission = self.emission.upper_bound(local, mu_t, density);
+        Majorant { mu_t: mu_t.max_element(), emission }
+    }
+}
+
+/// One volume in its own space, ready to be placed any number of times.
+#[derive(Clone, Debug)]
+pub struct Volume {
+    region: Region,
+    substance: Substance,
+    bounds: Bounds,
+    /// Edge of a voxel in the volume's space; `None` where nothing has voxels.
+    voxel: Option<f32>,
+    /// Largest ∫ lum ε along the probing chords of each axis, in the volume's own lengths.
+    chords: Vec3A,
+}
+
+/// The bounds of a volume's coefficients.
+#[derive(Clone, Debug)]
+pub enum Bounds {
+    /// The coefficients are the same everywhere, these exactly.
+    Uniform(Coefficients, Majorant),
+    /// They vary; bounded by cells.
+    Cells(MajorantGrid),
+}
+
+impl Volume {
+    /// A volume with the same coefficients throughout.
+    pub fn uniform(region: Region, substance: Substance) -> Self {
+        let inside = substance.at(Vec3A::ZERO);
+        let emission = luminance(inside.emission);
+        let majorant = Majorant { mu_t: inside.mu_t.max_element(), emission };
+        let size = match region {
+            // All of space has no chord; one unit of length stands in.
+            Region::Everywhere => Vec3A::ONE,
+            _ => region.bounds().size(),
+        };
+        let bounds = Bounds::Uniform(inside, majorant);
+        Self { region, substance, bounds, voxel: None, chords: emission * size }
+    }
+
+    /// A volume whose coefficients vary inside a box, bounded over cells of about `cell_size`.
+    /// `voxel` is the edge of the smallest stored voxel in the volume's space, if any is stored.
+    pub fn varying(
+        bounds: Aabb,
+        substance: Substance,
+        cell_size: Vec3A,
+        voxel: Option<f32>,
+    ) -> Self {
+        let cells = MajorantGrid::build(bounds, cell_size, |cell| substance.majorant_over(cell));
+        let chords = probe_chords(&cells, &substance);
+        let region = Region::Box(bounds);
+        Self { region, substance, bounds: Bounds::Cells(cells), voxel, chords }
+    }
+
+    /// Where it is.
+    pub fn region(&self) -> &Region {
+        &self.region
+    }
+
+    /// What it is made of.
+    pub fn substance(&self) -> &Substance {
+        &self.substance
+    }
+
+    /// How large its coefficients get.
+    pub fn bounds(&self) -> &Bounds {
+        &self.bounds
+    }
+
+    /// Edge of a voxel in the volume's space, if it has any.
+    pub fn voxel(&self) -> Option<f32> {
+        self.voxel
+    }
+
+    /// Largest ∫ lum ε along the probing chords of each axis, in the volume's own lengths.
+    pub fn chords(&self) -> Vec3A {
+        self.chords
+    }
+}
+
+/// Sums the emission at the cells' centers along every row of cells of each axis, and keeps the
+/// largest sum. It only sets the unit of the boost amount, so a coarse sum will do.
+fn probe_chords(cells: &MajorantGrid, substance: &Substance) -> Vec3A {
+    if !substance.emission.is_some() {
+        return Vec3A::ZERO;
+    }
+    let mut rows = std::collections::BTreeMap::<(usize, i32, i32), f32>::new();
+    cells.for_each_cell(|cell, region, majorant| {
+        if majorant.emission <= 0.0 {
+            return;
+        }
+        let emission = luminance(substance.at(region.center()).emission);
+        for axis in 0..3 {
+            let row: IVec3 = cell;
+            let key = (axis, row[(axis + 1) % 3], row[(axis + 2) % 3]);
+            *rows.entry(key).or_default() += emission * cells.cell_size()[axis];
+        }
+    });
+    rows.iter().fold(Vec3A::ZERO, |mut brightest, (&(axis, ..), &sum)| {
+        brightest[axis] = brightest[axis].max(sum);
+        brightest
+    })
+}

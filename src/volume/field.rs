@@ -1,0 +1,145 @@
+//! Scalar and color fields in a volume's own space: stored grids and procedural shapes alike.
+
+use std::sync::Arc;
+
+use glam::{Affine3A, Vec3A};
+
+use super::{
+    grid::{SparseGrid, Voxel},
+    procedural::{Noise, Ramp},
+};
+use crate::math::{Aabb, Rgb};
+
+/// A grid seen from the space of a volume whose first grid may be another one.
+#[derive(Clone, Debug)]
+pub struct GridField<V: Voxel> {
+    grid: Arc<SparseGrid<V>>,
+    /// `None` where the volume's space is the grid's own index space.
+    grid_from_local: Option<Affine3A>,
+    /// Where the grid ends, in its index space, if its background is not zero.
+    clip: Option<Aabb>,
+}
+
+impl<V: Voxel> GridField<V> {
+    /// Places `grid` in a volume's space. An identity placement costs nothing at look-up.
+    pub fn new(grid: Arc<SparseGrid<V>>, grid_from_local: Affine3A) -> Self {
+        let identity = grid_from_local.abs_diff_eq(Affine3A::IDENTITY, 1e-6);
+        let clip = (grid.background() != V::ZERO).then(|| grid_support(&grid));
+        Self { grid, grid_from_local: (!identity).then_some(grid_from_local), clip }
+    }
+
+    /// The grid itself.
+    pub fn grid(&self) -> &Arc<SparseGrid<V>> {
+        &self.grid
+    }
+
+    /// Trilinear value at a point of the volume's space.
+    #[inline]
+    pub fn at(&self, local: Vec3A) -> V {
+        let index = match &self.grid_from_local {
+            None => local,
+            Some(transform) => transform.transform_point3a(local),
+        };
+        if let Some(clip) = &self.clip
+            && (index.cmplt(clip.min) | index.cmpgt(clip.max)).any()
+        {
+            return V::ZERO;
+        }
+        self.grid.sample(index)
+    }
+
+    /// Bounds of the values over a box of the volume's space; each holds for all of it.
+    pub fn range(&self, local: &Aabb) -> (V, V) {
+        let index = match &self.grid_from_local {
+            None => *local,
+            Some(transform) => local.transformed(transform),
+        };
+        let (min, max) = self.grid.range(index.min.into(), index.max.into());
+        if self.clip.is_some() {
+            return (min.component_min(V::ZERO), max.component_max(V::ZERO));
+        }
+        (min, max)
+    }
+}
+
+/// The box a grid fills in its index space: half a voxel beyond its stored values.
+pub fn grid_support<V: Voxel>(grid: &SparseGrid<V>) -> Aabb {
+    match grid.bounds() {
+        None => Aabb::EMPTY,
+        Some(bounds) => Aabb::new(
+            bounds.min.as_vec3a() - Vec3A::splat(0.5),
+            bounds.max.as_vec3a() + Vec3A::splat(0.5),
+        ),
+    }
+}
+
+/// A scalar at each point of a volume.
+#[derive(Clone, Debug)]
+pub enum ScalarField {
+    /// The same everywhere.
+    Constant(f32),
+    /// A stored grid.
+    Grid(GridField<f32>),
+    /// A gradient along one axis.
+    Ramp(Ramp),
+    /// Fractal noise.
+    Noise(Noise),
+}
+
+impl ScalarField {
+    /// The value at a point.
+    #[inline]
+    pub fn at(&self, local: Vec3A) -> f32 {
+        match self {
+            Self::Constant(value) => *value,
+            Self::Grid(grid) => grid.at(local),
+            Self::Ramp(ramp) => ramp.at(local),
+            Self::Noise(noise) => noise.at(local),
+        }
+    }
+
+    /// Bounds of the values over a box.
+    pub fn range(&self, local: &Aabb) -> (f32, f32) {
+        match self {
+            Self::Constant(value) => (*value, *value),
+            Self::Grid(grid) => grid.range(local),
+            Self::Ramp(ramp) => ramp.range(local),
+            Self::Noise(noise) => noise.range(local),
+        }
+    }
+}
+
+/// A color at each point of a volume.
+#[derive(Clone, Debug)]
+pub enum RgbField {
+    /// The same everywhere.
+    Constant(Rgb),
+    /// A scalar field times a color.
+    Tinted(ScalarField, Rgb),
+    /// A stored grid of colors.
+    Grid(GridField<Vec3A>),
+}
+
+impl RgbField {
+    /// The value at a point.
+    #[inline]
+    pub fn at(&self, local: Vec3A) -> Rgb {
+        match self {
+            Self::Constant(value) => *value,
+            Self::Tinted(field, tint) => field.at(local) * *tint,
+            Self::Grid(grid) => grid.at(local),
+        }
+    }
+
+    /// Upper bounds of the channels over a box.
+    pub fn upper_bound(&self, local: &Aabb) -> Rgb {
+        match self {
+            Self::Constant(value) => *value,
+            Self::Tinted(field, tint) => {
+                let (min, max) = field.range(local);
+                (min * *tint).max(max * *tint)
+            }
+            Self::Grid(grid) => grid.range(local).1,
+        }
+    }
+}

@@ -1,0 +1,42 @@
+//! What light transport knows of a medium: coefficients at a point of a ray, and stretches of the
+//! ray with upper bounds. The grids behind them stay out of its sight.
+
+use crate::math::Rgb;
+
+/// The coefficients of the medium at a point, summed over the volumes that overlap there.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Coefficients {
+    /// Extinction μ_t = μ_a + μ_s, 1/length.
+    pub mu_t: Rgb,
+    /// Scattering μ_s, 1/length.
+    pub mu_s: Rgb,
+    /// Emission ε, radiance per length.
+    pub emission: Rgb,
+}
+
+impl Coefficients {
+    /// Absorption μ_a = μ_t − μ_s, 1/length.
+    #[inline]
+    pub fn mu_a(&self) -> Rgb {
+        (self.mu_t - self.mu_s).max(Rgb::ZERO)
+    }
+}
+
+/// A stretch of a ray over which one set of bounds holds. Empty stretches are never seen.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Segment {
+    /// Where it begins, as a ray parameter.
+    pub t0: f32,
+    /// Where it ends; may be infinite in a medium without borders.
+    pub t1: f32,
+    /// Upper bound of every channel of μ_t, 1/length. Summed over overlapping volumes.
+    pub majorant: f32,
+    /// Upper bound of lum ε over each volume's brightest chord ∫ lum ε dt, 1/length: collisions at
+    /// this rate would be one along that chord. Free of exposure and units. Zero only where
+    /// nothing emits.
+    pub emission_rate: f32,
+    /// One collision per smallest voxel here, 1/length; 0 where nothing has voxels.
+    pub voxel_rate: f32,
+    /// Whether the coefficients are the same all along it.
+    pub uniform: bool,
+}

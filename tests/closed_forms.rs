@@ -1,0 +1,289 @@
+//! Scenes whose radiance has a closed form or a quadrature.
+
+mod common;
+
+use common::{
+    Estimate, Verdicts, all_strategies, build, measure, measure_with, name, with_strategy,
+};
+use flambeau::math::Rgb;
+
+/// A camera at z = −1 looking along +z at what lies above z = 0.
+const UPWARD: &str = r#"
+    [camera]
+    position = [0, 0, -1]
+    target = [0, 0, 0]
+    up = [0, 1, 0]
+    fov_x = 0.01
+"#;
+
+fn in_every_combination(text: &str, paths: u32, mut check: impl FnMut(&str, &Estimate)) {
+    let scene = build(text);
+    for strategy in all_strategies() {
+        let estimate = measure(&with_strategy(&scene, strategy), paths);
+        check(&name(&strategy), &estimate);
+    }
+}
+
+/// σ = 0.2 + 0.3 t over length 3: τ = 0.6 + 1.35 = 1.95, T = e^−1.95, and L = 1 − T for L_e = 1.
+#[test]
+fn linear_ramp() {
+    let ramp = r#"
+        [[volume]]
+        shape = "ramp"
+        half_size = [0.5, 0.5, 1.5]
+        translate = [0, 0, 1.5]
+        axis = "z"
+        kind = "linear"
+        a = 0.2
+        b = 0.3
+        density = { scale = 1.0 }
+        albedo = 0.0
+    "#;
+    let mut verdicts = Verdicts::default();
+    let transmitted = format!("{UPWARD}[environment]\nradiance = 1.0\n{ramp}");
+    in_every_combination(&transmitted, 400_000, |combination, estimate| {
+        verdicts.check(&format!("T {combination}"), estimate, 0.142_274);
+    });
+    let glowing = format!("{UPWARD}{ramp}emission = {{ mode = \"source\", le = 1.0 }}");
+    in_every_combination(&glowing, 40_000, |combination, estimate| {
+        verdicts.check(&format!("L {combination}"), estimate, 0.857_726);
+    });
+    verdicts.finish();
+}
+
+/// σ = 2 e^(−t/0.5) over length 2: τ = 1 − e^−4.
+#[test]
+fn exponential_ramp() {
+    let text = format!(
+        r#"{UPWARD}
+        [environment]
+        radiance = 1.0
+        [[volume]]
+        shape = "ramp"
+        half_size = [0.5, 0.5, 1]
+        translate = [0, 0, 1]
+        axis = "z"
+        kind = "exponential"
+        a = 2.0
+        h = 0.5
+        density = {{ scale = 1.0 }}
+        albedo = 0.0
+        "#
+    );
+    let expected = (-(1.0 - (-4.0_f64).exp())).exp();
+    let mut verdicts = Verdicts::default();
+    in_every_combination(&text, 200_000, |combination, estimate| {
+        verdicts.check(combination, estimate, expected);
+    });
+    verdicts.finish();
+}
+
+/// Emission 1 + 0.5 t under an extinction of 0.8 over length 2, as two volumes that overlap:
+/// ∫₀² (1 + 0.5 t) e^(−0.8 t) dt = 1.368777.
+#[test]
+fn overlapping_emission_and_absorption() {
+    let text = format!(
+        r#"{UPWARD}
+        [[volume]]
+        shape = "box"
+        half_size = [0.5, 0.5, 1]
+        translate = [0, 0, 1]
+        density = {{ scale = 0.8 }}
+        albedo = 0.0
+        [[volume]]
+        shape = "ramp"
+        half_size = [0.5, 0.5, 1]
+        translate = [0, 0, 1]
+        axis = "z"
+        a = 1.0
+        b = 0.5
+        density = {{ scale = 0.0 }}
+        emission = {{ mode = "grid", scale = 1.0 }}
+        "#
+    );
+    let mut verdicts = Verdicts::default();
+    in_every_combination(&text, 1_000_000, |combination, estimate| {
+        verdicts.check(combination, estimate, 1.368_777);
+    });
+    verdicts.finish();
+}
+
+/// Fire without soot: emission j over length d without any extinction is j·d.
+#[test]
+fn emission_without_extinction() {
+    let mut verdicts = Verdicts::default();
+    let uniform = format!(
+        r#"{UPWARD}
+        [[volume]]
+        shape = "box"
+        half_size = [0.5, 0.5, 2]
+        translate = [0, 0, 2]
+        density = {{ scale = 0.0 }}
+        emission = {{ mode = "constant", value = [2.0, 0.5, 0.0] }}
+        "#
+    );
+    // Without ratio tracking one path in five or so finds anything at all.
+    in_every_combination(&uniform, 2_000_000, |combination, estimate| {
+        verdicts.check_channel(&format!("red {combination}"), estimate, 0, 8.0);
+        verdicts.check_channel(&format!("green {combination}"), estimate, 1, 2.0);
+    });
+    let varying = format!(
+        r#"{UPWARD}
+        [[volume]]
+        shape = "ramp"
+        half_size = [0.5, 0.5, 2]
+        translate = [0, 0, 2]
+        axis = "z"
+        a = 0.5
+        b = 1.0
+        density = {{ scale = 0.0 }}
+        emission = {{ mode = "grid", scale = 0.5 }}
+        "#
+    );
+    in_every_combination(&varying, 3_000_000, |combination, estimate| {
+        verdicts.check(&format!("ramp {combination}"), estimate, 0.5 * (0.5 * 4.0 + 8.0));
+    });
+    verdicts.finish();
+}
+
+/// A ball seen through its middle: L = L_e (1 − e^(−2κR)), with sharp borders.
+#[test]
+fn absorbing_ball() {
+    let text = r#"
+        [camera]
+        position = [0, -5, 0]
+        target = [0, 0, 0]
+        fov_x = 0.01
+        [[volume]]
+        shape = "sphere"
+        radius = 1.5
+        density = { scale = 0.4 }
+        albedo = 0.0
+        emission = { mode = "source", le = [3.0, 1.0, 0.5] }
+    "#;
+    let mut verdicts = Verdicts::default();
+    in_every_combination(text, 200_000, |combination, estimate| {
+        let opacity = 1.0 - (-1.2_f64).exp();
+        for (channel, le) in [3.0, 1.0, 0.5].into_iter().enumerate() {
+            verdicts.check_channel(combination, estimate, channel, le * opacity);
+        }
+    });
+    verdicts.finish();
+}
+
+/// Density per channel: each channel has its own transmittance, grey or not.
+#[test]
+fn chromatic_slab() {
+    let text = format!(
+        r#"{UPWARD}
+        [environment]
+        radiance = 1.0
+        [[volume]]
+        shape = "ramp"
+        half_size = [0.5, 0.5, 0.5]
+        translate = [0, 0, 0.5]
+        axis = "z"
+        a = 0.5
+        b = 1.0
+        density = {{ scale = [0.5, 1.0, 1.5] }}
+        albedo = 0.0
+        "#
+    );
+    let mut verdicts = Verdicts::default();
+    in_every_combination(&text, 400_000, |combination, estimate| {
+        for (channel, tau) in [0.5, 1.0, 1.5_f64].into_iter().enumerate() {
+            verdicts.check_channel(combination, estimate, channel, (-tau).exp());
+        }
+    });
+    verdicts.finish();
+}
+
+/// Single scattering of a point light in fog (Sun et al. 2005): extinction β, albedo 1, the light
+/// at distance d under an angle to the view, of length `length`.
+fn airlight(beta: f64, distance: f64, degrees: f64, length: f64, g: f64) -> String {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    let (x, z) = (distance * sin, distance * cos);
+    format!(
+        r#"
+        [camera]
+        position = [0, 0, 0]
+        target = [0, 0, 1]
+        up = [0, 1, 0]
+        fov_x = 0.01
+        [path]
+        max_scatters = 1
+        [[volume]]
+        shape = "everywhere"
+        density = {{ scale = {beta} }}
+        albedo = 1.0
+        phase = {{ g = {g} }}
+        [[light]]
+        type = "point"
+        position = [{x}, 0, {z}]
+        intensity = 1.0
+        [[surface]]
+        shape = "plane"
+        point = [0, 0, {length}]
+        normal = [0, 0, 1]
+        material = {{ type = "black" }}
+        "#
+    )
+}
+
+#[test]
+fn airlight_of_a_point_light() {
+    let mut verdicts = Verdicts::default();
+    for (case, g, expected) in [
+        ([0.1, 5.0, 20.0, 20.0], 0.0, 0.005_838_609_954),
+        ([0.1, 5.0, 20.0, 20.0], 0.8, 0.004_566_362),
+        ([0.1, 5.0, 20.0, 20.0], -0.5, 0.005_534_000),
+        ([1.0, 2.0, 90.0, 3.0], 0.0, 0.001_823_829_325),
+        ([1.0, 2.0, 90.0, 3.0], 0.8, 0.000_234_263),
+    ] {
+        let [beta, distance, degrees, length] = case;
+        let text = airlight(beta, distance, degrees, length, g);
+        in_every_combination(&text, 400_000, |combination, estimate| {
+            verdicts.check(&format!("β {beta}, g {g}, {combination}"), estimate, expected);
+        });
+    }
+    verdicts.finish();
+}
+
+/// In an isothermal volume that does not scatter, L = L_e · alpha, pixel by pixel (identity 3).
+#[test]
+fn isothermal_radiance_is_alpha() {
+    let text = r#"
+        [camera]
+        position = [0, -5, 0.5]
+        target = [0, 0, 0]
+        fov_x = 30
+        [[volume]]
+        shape = "noise"
+        half_size = 1.0
+        frequency = 2.0
+        contrast = 3.0
+        rotate = [20, 30, 40]
+        scale = [1.0, 0.8, 1.2]
+        density = { scale = 2.0 }
+        albedo = 0.0
+        emission = { mode = "source", le = [2.0, 1.0, 0.5] }
+    "#;
+    let scene = build(text);
+    let mut verdicts = Verdicts::default();
+    for strategy in all_strategies() {
+        let scene = with_strategy(&scene, strategy);
+        let paths = 300_000;
+        let difference = measure_with(&scene, paths, |sample| {
+            sample.emission - sample.alpha * Rgb::new(2.0, 1.0, 0.5)
+        });
+        let radiance = measure(&scene, paths);
+        for channel in 0..3 {
+            let z = difference.mean[channel] / difference.error(channel).max(1e-9);
+            assert!(z.abs() < common::Z_LIMIT, "{}: z {z}", name(&strategy));
+            let weak = difference.error(channel) > common::POWER * radiance.mean[channel];
+            assert!(!weak, "{}: too weak", name(&strategy));
+            verdicts.check_equal("alpha", &difference, &Estimate::default(), channel);
+        }
+    }
+    verdicts.finish();
+}

@@ -1,0 +1,193 @@
+//! Scenes as text, estimates with their standard errors, and the z-tests that judge them.
+//!
+//! Every comparison asks for |z| <= 5, so that one false alarm has probability 5.7e-7 and a family
+//! of M comparisons at most M times that; no family here has more than a thousand. The standard
+//! error is held to 0.5 % of the expected value unless a test says why not, so that an error of
+//! 5 % in any of them is found with near certainty.
+#![allow(dead_code)]
+
+use std::{path::Path, sync::Arc};
+
+use flambeau::{
+    error::NO_PROGRESS,
+    math::Rgb,
+    scene::{self, Overrides, VolumeCache},
+    transport::{Frame, PathSample, PixelSampler, Scene, strategy::Strategy},
+};
+use glam::UVec2;
+use rayon::prelude::*;
+
+/// |z| up to which a measurement counts as agreeing.
+pub const Z_LIMIT: f64 = 5.0;
+/// Largest standard error, relative to the expected value, that a test may rest on.
+pub const POWER: f64 = 0.005;
+
+/// A mean per channel, with the variance of it.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Estimate {
+    pub mean: [f64; 3],
+    pub variance: [f64; 3],
+}
+
+impl Estimate {
+    /// Standard error of a channel.
+    pub fn error(&self, channel: usize) -> f64 {
+        self.variance[channel].sqrt()
+    }
+}
+
+/// The seed of a run: 0 unless fresh seeds are asked for through FLAMBEAU_FRESH_SEEDS.
+pub fn seed() -> u64 {
+    match std::env::var_os("FLAMBEAU_FRESH_SEEDS") {
+        None => 0,
+        Some(_) => {
+            let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap();
+            let seed = now.as_nanos() as u64;
+            eprintln!("fresh seed {seed}");
+            seed
+        }
+    }
+}
+
+/// Builds a scene from its text; file names are relative to the tests' folder.
+pub fn build(text: &str) -> Scene {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests");
+    let settings = scene::parse(text, "test scene", &folder, &Overrides::default()).unwrap();
+    scene::build(&settings, &VolumeCache::default(), NO_PROGRESS).unwrap()
+}
+
+/// A built scene under another strategy.
+pub fn with_strategy(scene: &Scene, strategy: Strategy) -> Scene {
+    Scene { strategy, ..scene.clone() }
+}
+
+/// Every combination of the toggles.
+pub fn all_strategies() -> Vec<Strategy> {
+    (0..8)
+        .map(|bits| Strategy {
+            emission_decoupling: bits & 1 != 0,
+            emission_ratio_tracking: bits & 2 != 0,
+            majorant_boost: bits & 4 != 0,
+            ..Strategy::default()
+        })
+        .collect()
+}
+
+/// A short name of a strategy for messages.
+pub fn name(strategy: &Strategy) -> String {
+    let on = |flag: bool, letter: char| if flag { letter } else { '-' };
+    [
+        on(strategy.emission_decoupling, 'd'),
+        on(strategy.emission_ratio_tracking, 'r'),
+        on(strategy.majorant_boost, 'b'),
+    ]
+    .iter()
+    .collect()
+}
+
+/// Side of the film that single-value scenes are rendered on.
+const SIDE: u32 = 64;
+
+/// The mean over the whole film of what `of` takes from each path.
+pub fn measure_with(scene: &Scene, paths: u32, of: impl Fn(&PathSample) -> Rgb + Sync) -> Estimate {
+    let frame = Frame { scene: Arc::new(scene.clone()), size: UVec2::splat(SIDE), seed: seed() };
+    let samples = paths.div_ceil(SIDE * SIDE);
+    let rows: Vec<[[f64; 3]; 2]> = (0..SIDE)
+        .into_par_iter()
+        .map(|y| {
+            let mut sums = [[0.0; 3]; 2];
+            for x in 0..SIDE {
+                for s in 0..samples {
+                    let value = of(&frame.sample(UVec2::new(x, y), s));
+                    for c in 0..3 {
+                        let v = f64::from(value[c]);
+                        sums[0][c] += v;
+                        sums[1][c] += v * v;
+                    }
+                }
+            }
+            sums
+        })
+        .collect();
+    let n = f64::from(SIDE * SIDE * samples);
+    let mut estimate = Estimate::default();
+    for c in 0..3 {
+        let [sum, squares] = [0, 1].map(|k| rows.iter().map(|row| row[k][c]).sum::<f64>());
+        estimate.mean[c] = sum / n;
+        estimate.variance[c] = (squares / n - (sum / n).powi(2)).max(0.0) / (n - 1.0);
+    }
+    estimate
+}
+
+/// The mean radiance over the whole film.
+pub fn measure(scene: &Scene, paths: u32) -> Estimate {
+    measure_with(scene, paths, PathSample::beauty)
+}
+
+/// Comparisons gathered, so that one run shows all that fail.
+#[derive(Default)]
+pub struct Verdicts {
+    failures: Vec<String>,
+    count: usize,
+}
+
+impl Verdicts {
+    /// Holds channel 0 of an estimate against a known value.
+    pub fn check(&mut self, label: &str, estimate: &Estimate, expected: f64) {
+        self.check_channel(label, estimate, 0, expected);
+    }
+
+    /// Holds a channel of an estimate against a known value.
+    pub fn check_channel(
+        &mut self,
+        label: &str,
+        estimate: &Estimate,
+        channel: usize,
+        expected: f64,
+    ) {
+        let (mean, error) = (estimate.mean[channel], estimate.error(channel));
+        self.count += 1;
+        // Exact answers may come without noise; rounding of single precision is what is left.
+        let rounding = 2e-5 * expected.abs();
+        let z = (mean - expected) / error.hypot(rounding).max(1e-12);
+        println!("{label}: {mean:.6} ± {error:.6}, expected {expected:.6}, z {z:.2}");
+        if z.abs() > Z_LIMIT {
+            self.failures.push(format!("{label}: {mean} ± {error}, expected {expected}, z {z:.1}"));
+        }
+        if error > POWER * expected.abs() {
+            self.failures.push(format!("{label}: too weak, {error} of {expected}"));
+        }
+    }
+
+    /// Holds two estimates of one value against each other.
+    pub fn check_equal(&mut self, label: &str, a: &Estimate, b: &Estimate, channel: usize) {
+        self.count += 1;
+        let error = (a.variance[channel] + b.variance[channel]).sqrt();
+        let z = (a.mean[channel] - b.mean[channel]) / error.max(1e-12);
+        println!("{label}: {} against {}, z {z:.2}", a.mean[channel], b.mean[channel]);
+        if z.abs() > Z_LIMIT {
+            let (a, b) = (a.mean[channel], b.mean[channel]);
+            self.failures.push(format!("{label}: {a} against {b} ± {error}, z {z:.1}"));
+        }
+    }
+
+    /// Panics with every failure.
+    pub fn finish(self) {
+        assert!(self.count > 0, "nothing was compared");
+        assert!(self.failures.is_empty(), "{}", self.failures.join("\n"));
+    }
+}
+
+/// The folder of large test data beside the repository; `None`, said aloud, where it is absent.
+pub fn shared(file: &str) -> Option<std::path::PathBuf> {
+    let folder = std::env::var_os("FLAMBEAU_SHARED").map_or_else(
+        || Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared"),
+        std::path::PathBuf::from,
+    );
+    let path = folder.join(file);
+    if path.exists() {
+        return Some(path);
+    }
+    eprintln!("skipped: {} is not there", path.display());
+    None
+}

@@ -1,0 +1,198 @@
+//! Furnaces: scenes in equilibrium, in which every pixel has the same known radiance, and places
+//! where renderers have been seen to go wrong.
+
+mod common;
+
+use common::{Verdicts, all_strategies, build, measure, name, with_strategy};
+
+const CAMERA: &str = r#"
+    [camera]
+    position = [0.3, -4, 1.2]
+    target = [0, 0, 0]
+    fov_x = 60
+"#;
+
+/// Two overlapping volumes, rotated and scaled, one of them with sharp borders.
+fn volumes(albedo: f64, emission: &str) -> String {
+    format!(
+        r#"
+        [[volume]]
+        shape = "noise"
+        half_size = 1.0
+        frequency = 1.5
+        contrast = 2.0
+        rotate = [10, 20, 30]
+        scale = [1.2, 0.9, 1.0]
+        density = {{ scale = 3.0 }}
+        albedo = {albedo}
+        phase = {{ g = 0.6 }}
+        {emission}
+        [[volume]]
+        shape = "sphere"
+        radius = 0.8
+        translate = [0.5, 0.2, -0.3]
+        density = {{ scale = 0.7 }}
+        albedo = {albedo}
+        phase = {{ g = -0.3 }}
+        {emission}
+        "#
+    )
+}
+
+fn check_everywhere(text: &str, paths: u32, expected: f64) {
+    let scene = build(text);
+    let mut verdicts = Verdicts::default();
+    for strategy in all_strategies() {
+        let estimate = measure(&with_strategy(&scene, strategy), paths);
+        for channel in 0..3 {
+            verdicts.check_channel(&name(&strategy), &estimate, channel, expected);
+        }
+    }
+    verdicts.finish();
+}
+
+/// Environment B, ε = μ_a B, a mirror-like metal of reflectance 1 is white only without masking
+/// loss, so the surfaces are diffuse: one white, one of reflectance ρ that emits (1 − ρ) B.
+#[test]
+fn everything_glows_alike() {
+    let glow = r#"emission = { mode = "source", le = 2.0 }"#;
+    let surfaces = r#"
+        [environment]
+        radiance = 2.0
+        [[surface]]
+        shape = "plane"
+        point = [0, 0, -1.1]
+        normal = [0, 0, 1]
+        half_size = 3.0
+        material = { type = "diffuse", reflectance = 1.0 }
+        [[surface]]
+        shape = "sphere"
+        center = [0.4, -0.6, 0.1]
+        radius = 0.4
+        material = { type = "diffuse", reflectance = 0.3 }
+        emission = 1.4
+        [[surface]]
+        shape = "box"
+        center = [-0.9, 0.3, -0.2]
+        half_size = 0.25
+        material = { type = "diffuse", reflectance = 0.6 }
+        emission = 0.8
+        [[surface]]
+        shape = "quad"
+        center = [0.9, 0.9, 0.3]
+        half_edge_u = [0.4, 0.1, 0.0]
+        half_edge_v = [0.0, 0.1, 0.5]
+        material = { type = "black" }
+        emission = 2.0
+    "#;
+    check_everywhere(&format!("{CAMERA}{surfaces}{}", volumes(0.6, glow)), 300_000, 2.0);
+}
+
+/// White furnace: nothing absorbs, the environment is 1, and so is every pixel.
+#[test]
+fn nothing_is_lost_where_all_is_white() {
+    let surfaces = r#"
+        [environment]
+        radiance = 1.0
+        [[surface]]
+        shape = "sphere"
+        center = [0.4, -0.6, 0.1]
+        radius = 0.4
+        material = { type = "diffuse", reflectance = 1.0 }
+    "#;
+    check_everywhere(&format!("{CAMERA}{surfaces}{}", volumes(1.0, "")), 100_000, 1.0);
+}
+
+/// A camera inside a medium without borders that glows: no way out, the same radiance everywhere.
+#[test]
+fn a_world_full_of_glowing_fog() {
+    let text = format!(
+        r#"{CAMERA}
+        [[volume]]
+        shape = "everywhere"
+        density = {{ scale = 0.5 }}
+        albedo = [0.2, 0.5, 0.8]
+        emission = {{ mode = "source", le = 3.0 }}
+        [[surface]]
+        shape = "sphere"
+        center = [0, 0, 0]
+        radius = 1.0
+        material = {{ type = "diffuse", reflectance = 0.5 }}
+        emission = 1.5
+        "#
+    );
+    check_everywhere(&text, 300_000, 3.0);
+}
+
+/// Light samples stop at the borders of the medium: a ball in front of a lamp, seen from beside,
+/// is not fogged by medium the shadow ray has left. Analog and next-event estimates must agree;
+/// the lamp is a sphere that scattered rays find by themselves when it is not a light.
+#[test]
+fn an_emissive_box_inside_an_absorber() {
+    // ε = 1.5 over 2 lengths without own extinction, under 0.4 of absorption over 6 lengths:
+    // ∫ from 2 to 4 of 1.5 e^(−0.4 t) dt = 3.75 (e^−0.8 − e^−1.6).
+    let text = r#"
+        [camera]
+        position = [0, -3, 0]
+        target = [0, 0, 0]
+        fov_x = 0.01
+        [[volume]]
+        shape = "box"
+        half_size = 3.0
+        density = { scale = 0.4 }
+        albedo = 0.0
+        [[volume]]
+        shape = "box"
+        half_size = 1.0
+        density = { scale = 0.0 }
+        emission = { mode = "constant", value = 1.5 }
+    "#;
+    let expected = 3.75 * ((-0.8_f64).exp() - (-1.6_f64).exp());
+    let scene = build(text);
+    let mut verdicts = Verdicts::default();
+    for strategy in all_strategies() {
+        let estimate = measure(&with_strategy(&scene, strategy), 1_500_000);
+        verdicts.check(&name(&strategy), &estimate, expected);
+    }
+    verdicts.finish();
+}
+
+/// Irradiance of a diffuse floor under a sphere lamp inside a purely absorbing ball that does not
+/// reach the floor: the shadow ray leaves the medium half way and must not go on in it.
+#[test]
+fn light_samples_leave_the_medium() {
+    let text = r#"
+        [camera]
+        position = [0, -1, 3]
+        target = [0, 0, 0]
+        fov_x = 0.01
+        [path]
+        max_scatters = 1
+        [[volume]]
+        shape = "sphere"
+        radius = 1.0
+        translate = [0, 0, 5]
+        density = { scale = 1.0 }
+        albedo = 0.0
+        [[light]]
+        type = "sphere"
+        center = [0, 0, 5]
+        radius = 0.1
+        radiance = 10.0
+        [[surface]]
+        shape = "plane"
+        point = [0, 0, 0]
+        normal = [0, 0, 1]
+        material = { type = "diffuse", reflectance = 1.0 }
+    "#;
+    // The floor under the lamp: radiance = E/π, E = π L sin²θ e^−τ, sinθ = r/d, τ = 0.9 along
+    // the axis and nearly so for all directions (the lamp is small).
+    let expected = 10.0 * (0.1_f64 / 5.0).powi(2) * (-0.9_f64).exp();
+    let scene = build(text);
+    let mut verdicts = Verdicts::default();
+    for strategy in all_strategies() {
+        let estimate = measure(&with_strategy(&scene, strategy), 50_000);
+        verdicts.check(&name(&strategy), &estimate, expected);
+    }
+    verdicts.finish();
+}

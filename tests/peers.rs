@@ -1,0 +1,106 @@
+//! A fire whose noise-free picture is known, against every combination of the toggles.
+
+mod common;
+
+use std::sync::Arc;
+
+use common::{Z_LIMIT, all_strategies, build, name, seed, shared, with_strategy};
+use flambeau::transport::{Frame, PixelSampler, Scene};
+use glam::UVec2;
+use rayon::prelude::*;
+
+const SIDE: usize = 128;
+/// Pixels along the edge of a block; each block of each picture is one comparison.
+const BLOCK: usize = 16;
+
+/// Gray sums of one pixel: of the values and of their squares.
+type Sums = [f64; 2];
+
+fn gray_sums(scene: &Scene, samples: u32) -> Vec<Sums> {
+    let size = UVec2::splat(SIDE as u32);
+    let frame = Frame { scene: Arc::new(scene.clone()), size, seed: seed() };
+    let pixels: Vec<UVec2> =
+        (0..size.y).flat_map(|y| (0..size.x).map(move |x| UVec2::new(x, y))).collect();
+    pixels
+        .par_iter()
+        .map(|&pixel| {
+            (0..samples).fold([0.0; 2], |[sum, squares], sample| {
+                let value = f64::from(frame.sample(pixel, sample).beauty().element_sum() / 3.0);
+                [sum + value, squares + value * value]
+            })
+        })
+        .collect()
+}
+
+/// Mean over the pixels, and the variance of that mean, by stratified sampling: each pixel's own
+/// variance counts, not the picture's.
+fn mean_and_variance<'a>(pixels: impl Iterator<Item = &'a Sums>, samples: u32) -> (f64, f64) {
+    let n = f64::from(samples);
+    let (mut mean, mut variance, mut count) = (0.0, 0.0, 0.0);
+    for [sum, squares] in pixels {
+        mean += sum / n;
+        variance += (squares / n - (sum / n).powi(2)).max(0.0) / (n - 1.0);
+        count += 1.0;
+    }
+    (mean / count, variance / (count * count))
+}
+
+#[test]
+fn fire_absorb_matches_its_exact_picture() {
+    let Some(file) = shared("peers/flame.vdb") else { return };
+    let Some(exact) = shared("peers/fire_absorb_exact.npy") else { return };
+    let exact = npyz::NpyFile::new(std::fs::File::open(exact).unwrap()).unwrap();
+    let exact: Vec<f32> = exact.into_vec().unwrap();
+    let exact: Vec<f64> =
+        exact.chunks(3).map(|c| c.iter().map(|&v| f64::from(v)).sum::<f64>() / 3.0).collect();
+    let scene = build(&format!(
+        r#"
+        [camera]
+        position = [0, -5, 0.4]
+        target = [0, 0, 0]
+        fov_x = 32
+        [[volume]]
+        file = "{}"
+        albedo = 0.0
+        emission = {{ mode = "grid", grid = "emission" }}
+        "#,
+        file.display()
+    ));
+    let mut failures = Vec::new();
+    for strategy in all_strategies() {
+        // Unboosted emission is found by one path in fifteen; it takes more paths to say as much.
+        let samples = if strategy.majorant_boost { 64 } else { 256 };
+        let sums = gray_sums(&with_strategy(&scene, strategy), samples);
+        let name = name(&strategy);
+        compare(&name, &sums, &exact, samples, &mut failures);
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}
+
+fn compare(name: &str, sums: &[Sums], exact: &[f64], samples: u32, failures: &mut Vec<String>) {
+    let (mean, variance) = mean_and_variance(sums.iter(), samples);
+    let expected = exact.iter().sum::<f64>() / exact.len() as f64;
+    let (error, z) = (variance.sqrt(), (mean - expected) / variance.sqrt());
+    println!("{name}: {mean:.6} ± {error:.6}, exact {expected:.6}, z {z:.2}");
+    if z.abs() > Z_LIMIT || error > common::POWER * expected {
+        failures.push(format!("{name}: {mean} ± {error}, exact {expected}"));
+    }
+    for by in (0..SIDE).step_by(BLOCK) {
+        for bx in (0..SIDE).step_by(BLOCK) {
+            let inside = |i: &usize| {
+                (bx..bx + BLOCK).contains(&(i % SIDE)) && (by..by + BLOCK).contains(&(i / SIDE))
+            };
+            let block: Vec<usize> = (0..SIDE * SIDE).filter(inside).collect();
+            let (mean, variance) = mean_and_variance(block.iter().map(|&i| &sums[i]), samples);
+            let expected = block.iter().map(|&i| exact[i]).sum::<f64>() / block.len() as f64;
+            // Blocks the fire hardly touches are too dark to be found by a few thousand paths.
+            if expected < 1e-3 * exact.iter().copied().fold(0.0, f64::max) {
+                continue;
+            }
+            let z = (mean - expected) / variance.sqrt().max(1e-12);
+            if z.abs() > Z_LIMIT {
+                failures.push(format!("{name}: block {bx}, {by}: {mean}, exact {expected}, z {z}"));
+            }
+        }
+    }
+}

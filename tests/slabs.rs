@@ -1,0 +1,138 @@
+//! Slabs of known reflectance, transmittance and emissivity (adding-doubling; the row with
+//! g 0.75, albedo 0.9, depth 2 is van de Hulst's), and half spaces.
+//!
+//! By reciprocity the radiance along the normal of a slab that a uniform hemisphere lights with
+//! radiance 1 is its reflectance for light along the normal (hemisphere on the camera's side) or
+//! its transmittance (hemisphere behind). Black planes make the hemispheres.
+
+mod common;
+
+use common::{Verdicts, all_strategies, build, measure, name, with_strategy};
+use flambeau::transport::strategy::{Preset, Strategy};
+
+/// g, albedo, optical depth, R, T, ε.
+const ROWS: [[f64; 6]; 7] = [
+    [0.0, 0.5, 1.0, 0.09912, 0.44606, 0.45482],
+    [0.0, 0.9, 4.0, 0.40814, 0.12852, 0.46333],
+    [0.0, 1.0, 16.0, 0.90363, 0.09637, 0.0],
+    [0.75, 0.9, 2.0, 0.09739, 0.66096, 0.24165],
+    [0.75, 0.99, 4.0, 0.28432, 0.64651, 0.069175],
+    [0.85, 1.0, 4.0, 0.19091, 0.80909, 0.0],
+    [-0.5, 0.9, 4.0, 0.49920, 0.08385, 0.41695],
+];
+
+/// A slab across z in [0, 1], seen from z = 2 along −z with a very narrow view.
+fn slab(g: f64, albedo: f64, depth: f64, more: &str) -> String {
+    format!(
+        r#"
+        [camera]
+        position = [0, 0, 2]
+        target = [0, 0, 0]
+        up = [0, 1, 0]
+        fov_x = 0.01
+        [[volume]]
+        shape = "box"
+        half_size = [20000, 20000, 0.5]
+        translate = [0, 0, 0.5]
+        density = {{ scale = {depth} }}
+        albedo = {albedo}
+        phase = {{ g = {g} }}
+        {more}
+        "#
+    )
+}
+
+fn black_plane(z: f64) -> String {
+    format!(
+        r#"
+        [[surface]]
+        shape = "plane"
+        point = [0, 0, {z}]
+        normal = [0, 0, 1]
+        material = {{ type = "black" }}
+        [environment]
+        radiance = 1.0
+        "#
+    )
+}
+
+/// Paths that bring the standard error of a mean to 0.4 % of it. Values of 0 and 1 have variance
+/// m (1 − m); with ratio tracking each of a path's vertices adds its chance to see the light, a sum
+/// that may exceed 1, and the variance is larger.
+fn paths_for(expected: f64, strategy: &Strategy) -> u32 {
+    let spread = if strategy.emission_ratio_tracking { 0.45 } else { 0.0 };
+    let variance = expected * (1.0 - expected) + spread * expected;
+    (variance / (0.004 * expected).powi(2)) as u32 + 4096
+}
+
+#[test]
+fn reflectance_and_transmittance() {
+    let mut verdicts = Verdicts::default();
+    for [g, albedo, depth, r, t, _] in ROWS {
+        for (what, plane, expected) in [("R", -1.0, r), ("T", 3.0, t)] {
+            let scene = build(&slab(g, albedo, depth, &black_plane(plane)));
+            for preset in [Preset::Baseline, Preset::Full] {
+                let scene = with_strategy(&scene, preset.strategy());
+                let label = format!("{what} of g {g}, albedo {albedo}, depth {depth}, {preset}");
+                verdicts.check(
+                    &label,
+                    &measure(&scene, paths_for(expected, &scene.strategy)),
+                    expected,
+                );
+            }
+        }
+    }
+    verdicts.finish();
+}
+
+#[test]
+fn emissivity_in_every_combination_of_toggles() {
+    let mut verdicts = Verdicts::default();
+    for [g, albedo, depth, _, _, emissivity] in ROWS {
+        if emissivity == 0.0 {
+            continue;
+        }
+        let scene = build(&slab(g, albedo, depth, r#"emission = { mode = "source", le = 1.0 }"#));
+        for strategy in all_strategies() {
+            let label = format!("ε of g {g}, albedo {albedo}, depth {depth}, {}", name(&strategy));
+            let estimate =
+                measure(&with_strategy(&scene, strategy), paths_for(emissivity, &strategy));
+            verdicts.check(&label, &estimate, emissivity);
+        }
+    }
+    verdicts.finish();
+}
+
+/// Isotropic half space: √(1 − ω) H(1). A depth of 200 leaves nothing of the other side.
+#[test]
+fn half_spaces() {
+    let mut verdicts = Verdicts::default();
+    for (albedo, expected) in [(0.9, 0.585_053), (0.99, 0.247_279)] {
+        let scene = build(&slab(0.0, albedo, 200.0, r#"emission = { mode = "source", le = 1.0 }"#));
+        for preset in [Preset::Baseline, Preset::Full] {
+            let scene = with_strategy(&scene, preset.strategy());
+            let label = format!("half space of albedo {albedo}, {preset}");
+            verdicts.check(
+                &label,
+                &measure(&scene, paths_for(expected, &scene.strategy)),
+                expected,
+            );
+        }
+    }
+    verdicts.finish();
+}
+
+/// In a white slab nothing is lost: R + T = 1, each path counted on one of the two sides.
+#[test]
+fn a_conservative_slab_keeps_everything() {
+    let mut verdicts = Verdicts::default();
+    for (g, depth) in [(0.0, 16.0), (0.85, 4.0), (-0.5, 2.0)] {
+        let scene = build(&slab(g, 1.0, depth, "[environment]\nradiance = 1.0"));
+        for strategy in all_strategies() {
+            let label = format!("white slab, g {g}, depth {depth}, {}", name(&strategy));
+            let estimate = measure(&with_strategy(&scene, strategy), 40_000);
+            verdicts.check(&label, &estimate, 1.0);
+        }
+    }
+    verdicts.finish();
+}
