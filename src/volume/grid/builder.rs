@@ -123,7 +123,7 @@ impl<V: Voxel> GridBuilder<V> {
             return Err(Error::invalid("", "", "a tile that reaches past the largest coordinate"));
         }
         let bounds = IndexBox { min: origin, max: last.as_ivec3() };
-        if edge % LEAF_EDGE as u32 != 0 || (origin & (LEAF_EDGE - 1)) != IVec3::ZERO {
+        if !edge.is_multiple_of(LEAF_EDGE as u32) || (origin & (LEAF_EDGE - 1)) != IVec3::ZERO {
             return Err(Error::invalid("", "", "a tile that is not aligned to 8 voxels"));
         }
         let background = self.background();
