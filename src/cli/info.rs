@@ -3,16 +3,14 @@
 use std::fmt::{Debug, Write};
 use std::path::Path;
 
-use glam::{DAffine3, DVec3, Vec3A};
 use serde::Serialize;
 
 use super::{Exit, Refusal, print};
 use crate::error::{NO_PROGRESS, Result};
 use crate::image::exr::{Info, read_info};
 use crate::scene::settings::VolumeSettings;
-use crate::scene::{self, Settings, VolumeCache};
-use crate::volume::grid::{GridStats, IndexBox};
-use crate::volume::vdb::{Directory, GridInfo, VdbValues};
+use crate::scene::{self, GridDescription, Settings, VolumeCache};
+use crate::volume::vdb::GridInfo;
 
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
@@ -27,8 +25,12 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
     let text = match ending.unwrap_or_default().to_ascii_lowercase().as_str() {
         "exr" => snapshot(&read_info(Path::new(file))?),
         "toml" => summary(&scene::load(file)?),
-        _ if file.starts_with("builtin:") => summary(&scene::load(file)?),
-        _ => volume(VolumeCache::default().file(file, NO_PROGRESS)?.directory())?,
+        // An embedded name may be that of a volume or of a scene.
+        _ if file.starts_with("builtin:") => match volume(file) {
+            Ok(text) => text,
+            Err(_) => summary(&scene::load(file)?),
+        },
+        _ => volume(file)?,
     };
     print(&text)?;
     Ok(Exit::Done)
@@ -49,76 +51,46 @@ impl Report {
     }
 }
 
-fn volume(directory: &Directory) -> Result<String> {
+fn volume(file: &str) -> Result<String> {
+    let cache = VolumeCache::default();
+    let description = scene::describe(file, &cache, NO_PROGRESS)?;
+    let opened = cache.file(file, NO_PROGRESS)?;
+    let directory = opened.directory();
     let mut report = Report::default();
-    let (count, version) = (directory.grids.len(), directory.version);
+    let (version, count) = (directory.version, description.grids.len());
     report.title(&format!("OpenVDB file, format {version}, {count} grids"));
-    for (name, value) in &directory.metadata {
-        report.row(name, value.to_string());
+    for (name, value) in &description.metadata {
+        report.row(name, value);
     }
-    for (index, info) in directory.grids.iter().enumerate() {
-        report.title(&format!("\"{}\"", info.name));
-        let half = if info.is_half { ", stored as half floats" } else { "" };
-        report.row("type", format!("{}{half}", info.type_name));
-        report.row("class", info.class.to_string());
-        match directory.load(index, NO_PROGRESS)? {
-            VdbValues::Float(grid) => {
-                figures(&mut report, info, grid.stats(), grid.background(), f32::to_string);
-            }
-            VdbValues::Vec3(grid) => {
-                figures(&mut report, info, grid.stats(), grid.background(), |v| triple(v));
-            }
-            VdbValues::Unsupported(reason) => report.row("not readable", reason),
-        }
+    for (grid, info) in std::iter::zip(&description.grids, &directory.grids) {
+        describe_grid(&mut report, grid, info);
     }
     Ok(report.0)
 }
 
-/// The figures of a loaded grid.
-fn figures<V>(
-    report: &mut Report,
-    info: &GridInfo,
-    stats: &GridStats<V>,
-    background: V,
-    text: impl Fn(&V) -> String,
-) {
-    report.row("range", format!("{} .. {}", text(&stats.min), text(&stats.max)));
-    report.row("mean", text(&stats.mean));
-    report.row("background", text(&background));
-    report.row("active voxels", stats.active_voxels.to_string());
-    if stats.replaced_values > 0 {
-        report.row("not finite", format!("{} values read as background", stats.replaced_values));
+fn describe_grid(report: &mut Report, grid: &GridDescription, info: &GridInfo) {
+    report.title(&format!("\"{}\"", grid.name));
+    report.row("type", &grid.type_name);
+    report.row("class", &grid.class);
+    if let Some(reason) = &grid.unsupported {
+        report.row("not readable", reason);
+        return;
     }
-    report.row("memory", format!("{:.1} MiB", stats.memory_bytes as f64 / f64::from(1 << 20)));
+    report.row("voxel size", format!("{:?}", grid.voxel_size));
+    if let Some(voxels) = &grid.voxels {
+        report.row("range", format!("{} .. {}, mean {}", voxels.min, voxels.max, voxels.mean));
+        report.row("active voxels", voxels.active.to_string());
+        let bounds = voxels.bounds.map(|[low, high]| format!("{low:?} .. {high:?}"));
+        report.row("bounds", bounds.unwrap_or_else(|| "empty".to_owned()));
+        report.row("memory", format!("{:.1} MiB", voxels.memory_bytes as f64 / 1024.0 / 1024.0));
+    }
     let map = &info.transform.index_to_world;
-    report.row("voxel size", triple_f64(info.transform.voxel_size));
-    match stats.active_bounds {
-        Some(bounds) => {
-            report.row("index bounds", format!("{} .. {}", bounds.min, bounds.max));
-            let (low, high) = bounds_under(bounds, map);
-            report.row("world bounds", format!("{} .. {}", triple_f64(low), triple_f64(high)));
-        }
-        None => report.row("bounds", "empty"),
+    for row in 0..3 {
+        let axes = map.matrix3.row(row);
+        let name = if row == 0 { "transform" } else { "" };
+        let row = [axes.x, axes.y, axes.z, map.translation[row]];
+        report.row(name, format!("{row:?}"));
     }
-    let rows = [0, 1, 2].map(|row| {
-        let at = map.matrix3.row(row);
-        format!("[{}, {}, {}, {}]", at.x, at.y, at.z, map.translation[row])
-    });
-    report.row("transform", rows.join(", "));
-}
-
-/// The box in the world around the voxels of a box, half a voxel beyond their centers.
-fn bounds_under(bounds: IndexBox, world_from_index: &DAffine3) -> (DVec3, DVec3) {
-    let low = bounds.min.as_dvec3() - 0.5;
-    let high = bounds.max.as_dvec3() + 0.5;
-    let corners = (0..8).map(|corner| {
-        let pick = |axis: usize| if corner >> axis & 1 == 0 { low[axis] } else { high[axis] };
-        let corner = DVec3::new(pick(0), pick(1), pick(2));
-        world_from_index.transform_point3(corner)
-    });
-    corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), corner| {
-        (low.min(corner), high.max(corner))
-    })
 }
 
 fn snapshot(info: &Info) -> String {
@@ -234,14 +206,6 @@ fn plain(value: &(impl Serialize + Debug)) -> String {
     }
 }
 
-fn triple(value: &Vec3A) -> String {
-    format!("[{}, {}, {}]", value.x, value.y, value.z)
-}
-
-fn triple_f64(value: DVec3) -> String {
-    format!("[{}, {}, {}]", value.x, value.y, value.z)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -251,15 +215,5 @@ mod tests {
         let names = ["A", "B", "emission.G", "emission.R", "state.alpha.A", "state.x.R"];
         let names: Vec<String> = names.map(str::to_owned).to_vec();
         assert_eq!(layers(&names), "(A B), emission.(G R), state (2 channels)");
-    }
-
-    #[test]
-    fn bounds_end_half_a_voxel_beyond_the_last() {
-        use glam::IVec3;
-        let bounds = IndexBox { min: IVec3::new(-1, 0, 2), max: IVec3::new(1, 0, 3) };
-        let map = DAffine3::from_scale(DVec3::new(-2.0, 1.0, 1.0));
-        let (low, high) = bounds_under(bounds, &map);
-        assert_eq!(low, DVec3::new(-3.0, -0.5, 1.5));
-        assert_eq!(high, DVec3::new(3.0, 0.5, 3.5));
     }
 }

@@ -107,31 +107,55 @@ pub struct FilmStats {
     pub gray_variance_of_mean: Option<f64>,
     /// Mean over pixels of var / (mean² + ε²) of gray, with ε one hundredth of the picture's mean.
     pub mean_relative_variance: Option<f64>,
-    /// The noise of the picture: √(mean gray variance) / mean gray, its relative standard error.
+    /// The noise of the picture: the root of [`Self::mean_relative_variance`], that is the root
+    /// mean square of the pixels' relative standard errors. As light is never negative, no pixel
+    /// brings more than 1, so that a few fireflies cannot drown all others.
     pub noise: Option<f64>,
 }
 
 impl FilmStats {
     /// Measures `film`.
     pub fn of(film: &Film) -> Self {
-        let sums = reduce_rows(film, Spread::of);
-        let (pixels, measured) = (sums.pixels.max(1) as f64, sums.measured as f64);
-        let mean_rgb = sums.mean.map(|sum| sum / pixels);
-        let floor = (0.01 * gray(mean_rgb)).powi(2);
-        let relative = reduce_rows(film, |pixel| Spread {
-            variance: pixel.gray_variance().map_or(0.0, |variance| {
-                let weight = gray(pixel.mean()).powi(2) + floor;
-                if variance > 0.0 { variance / weight } else { 0.0 }
-            }),
-            ..Spread::default()
+        let lines: Vec<LineStats> = (0..film.size().y)
+            .into_par_iter()
+            .map(|y| {
+                let mut line = LineStats::default();
+                for x in 0..film.size().x {
+                    if let Some(pixel) = PixelEstimate::of(film, UVec2::new(x, y)) {
+                        line.add(&pixel, pixel.mean());
+                    }
+                }
+                line
+            })
+            .collect();
+        Self::from_lines(film, &lines)
+    }
+
+    /// The figures of `film` from those of its lines, from top to bottom.
+    pub(crate) fn from_lines(film: &Film, lines: &[LineStats]) -> Self {
+        let pixels: u64 = lines.iter().map(|line| line.pixels).sum();
+        let mean_rgb = [0, 1, 2].map(|c| {
+            let sum: f64 = lines.iter().map(|line| line.mean[c]).sum();
+            sum / pixels.max(1) as f64
         });
-        let some = |sum: f64| (sums.measured > 0).then(|| sum / measured);
+        let floor = (0.01 * gray(mean_rgb)).powi(2);
+        let measured: usize = lines.iter().map(|line| line.noise.len()).sum();
+        let over_measured = |value: &dyn Fn(f64, f64) -> f64| {
+            let pixels = lines.iter().flat_map(|line| &line.noise);
+            let sum: f64 = pixels.map(|&(gray, variance)| value(gray, variance)).sum();
+            (measured > 0).then(|| sum / measured as f64)
+        };
+        let relative = |gray: f64, variance: f64| match variance > 0.0 {
+            true => variance / (gray * gray + floor),
+            false => 0.0,
+        };
+        let mean_relative_variance = over_measured(&relative);
         Self {
             samples_per_pixel: samples_per_pixel(film),
             mean_rgb,
-            gray_variance_of_mean: some(sums.variance),
-            mean_relative_variance: some(relative.variance),
-            noise: sums.noise(),
+            gray_variance_of_mean: over_measured(&|_, variance| variance),
+            mean_relative_variance,
+            noise: mean_relative_variance.map(f64::sqrt),
         }
     }
 }
@@ -141,66 +165,23 @@ pub fn samples_per_pixel(film: &Film) -> f64 {
     film.totals.paths as f64 / (f64::from(film.size().x) * f64::from(film.size().y))
 }
 
-/// Sums over pixels from which the figures of a picture are formed.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Spread {
+/// What the figures of a film are formed from, for one line of it. Lines are summed in order, so
+/// that the figures do not depend on the number of threads.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct LineStats {
     pixels: u64,
     mean: [f64; 3],
-    measured: u64,
-    measured_gray: f64,
-    variance: f64,
+    /// Gray mean and its variance of every pixel that has one.
+    noise: Vec<(f64, f64)>,
 }
 
-impl Spread {
-    pub(crate) fn of(pixel: &PixelEstimate<'_>) -> Self {
-        Self::with_mean(pixel, pixel.mean())
+impl LineStats {
+    /// Adds a pixel, whose mean is known already.
+    pub(crate) fn add(&mut self, pixel: &PixelEstimate<'_>, mean: [f64; 3]) {
+        self.pixels += 1;
+        (0..3).for_each(|c| self.mean[c] += mean[c]);
+        self.noise.extend(pixel.gray_variance().map(|variance| (gray(mean), variance)));
     }
-
-    pub(crate) fn with_mean(pixel: &PixelEstimate<'_>, mean: [f64; 3]) -> Self {
-        let variance = pixel.gray_variance();
-        Self {
-            pixels: 1,
-            mean,
-            measured: u64::from(variance.is_some()),
-            measured_gray: variance.map_or(0.0, |_| gray(mean)),
-            variance: variance.unwrap_or(0.0),
-        }
-    }
-
-    pub(crate) fn add(&mut self, other: &Self) {
-        self.pixels += other.pixels;
-        (0..3).for_each(|c| self.mean[c] += other.mean[c]);
-        self.measured += other.measured;
-        self.measured_gray += other.measured_gray;
-        self.variance += other.variance;
-    }
-
-    /// See [`FilmStats::noise`].
-    pub(crate) fn noise(&self) -> Option<f64> {
-        let measured = self.measured as f64;
-        let mean = self.measured_gray / measured;
-        (self.measured > 0 && mean > 0.0).then(|| (self.variance / measured).sqrt() / mean)
-    }
-}
-
-/// Sums over all sampled pixels, line by line in order, so that the result does not depend on the
-/// number of threads.
-fn reduce_rows(film: &Film, spread: impl Fn(&PixelEstimate<'_>) -> Spread + Sync) -> Spread {
-    let lines: Vec<Spread> = (0..film.size().y)
-        .into_par_iter()
-        .map(|y| {
-            let mut line = Spread::default();
-            for x in 0..film.size().x {
-                if let Some(pixel) = PixelEstimate::of(film, UVec2::new(x, y)) {
-                    line.add(&spread(&pixel));
-                }
-            }
-            line
-        })
-        .collect();
-    let mut total = Spread::default();
-    lines.iter().for_each(|line| total.add(line));
-    total
 }
 
 #[cfg(test)]
@@ -255,21 +236,40 @@ mod tests {
     }
 
     /// The three channels of the synthetic sampler are equal, so gray has their variance, and the
-    /// noise is that of a uniform variable: √(1/(12 n)) / (1/2).
+    /// relative variance is that of a uniform variable, 1/(12 n) / (1/2)².
     #[test]
     fn figures_of_the_picture() {
         let film = sampled(UVec2::new(70, 50), 16);
         let stats = FilmStats::of(&film);
-        let noise = stats.noise.unwrap();
-        assert!((noise / ((1.0 / (12.0 * 16.0f64)).sqrt() / 0.5) - 1.0).abs() < 0.02, "{noise}");
+        let variance = stats.gray_variance_of_mean.unwrap();
+        assert!((variance * 12.0 * 16.0 - 1.0).abs() < 0.05, "{variance}");
         let relative = stats.mean_relative_variance.unwrap();
         // E[var / mean²] is a little above 1/(12 n) / (1/4) as the mean is noisy too.
         assert!((relative * 12.0 * 16.0 / 4.0 - 1.0).abs() < 0.1, "{relative}");
+        assert_eq!(stats.noise.unwrap().powi(2) as f32, relative as f32);
         assert!((gray(stats.mean_rgb) - 0.5).abs() < 0.01);
     }
 
     #[test]
-    fn a_black_picture_has_no_relative_noise() {
+    fn a_firefly_counts_as_one_pixel() {
+        let mut film = Film::new(UVec2::new(10, 10)).unwrap();
+        for y in 0..10 {
+            for x in 0..10 {
+                for s in 0..8 {
+                    let value = if (x, y, s) == (3, 3, 0) { 1.0e6 } else { 1.0 };
+                    let emission = crate::math::Rgb::splat(value);
+                    let sample = crate::transport::PathSample { emission, ..Default::default() };
+                    film.add(UVec2::new(x, y), &sample);
+                }
+            }
+        }
+        let stats = FilmStats::of(&film);
+        assert!((stats.noise.unwrap() - 0.1).abs() < 0.01, "{:?}", stats.noise);
+        assert!(stats.gray_variance_of_mean.unwrap() > 1.0e6);
+    }
+
+    #[test]
+    fn a_black_picture_has_no_noise() {
         let mut film = Film::new(UVec2::new(3, 3)).unwrap();
         for y in 0..3 {
             for x in 0..3 {
@@ -277,7 +277,7 @@ mod tests {
             }
         }
         let stats = FilmStats::of(&film);
-        assert_eq!((stats.noise, stats.mean_relative_variance), (None, Some(0.0)));
+        assert_eq!((stats.noise, stats.mean_relative_variance), (Some(0.0), Some(0.0)));
         assert_eq!(stats.gray_variance_of_mean, Some(0.0));
     }
 }

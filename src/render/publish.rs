@@ -3,7 +3,7 @@
 use glam::UVec2;
 use rayon::prelude::*;
 
-use super::estimate::{PixelEstimate, Spread, samples_per_pixel};
+use super::estimate::{FilmStats, LineStats, PixelEstimate, samples_per_pixel};
 use super::film::Film;
 use super::schedule::representative;
 
@@ -35,8 +35,7 @@ pub struct RenderStats {
     pub paths: u64,
     /// Samples that were not finite and count as zero.
     pub non_finite: u64,
-    /// Relative standard error of the picture, see [`super::FilmStats::noise`]; none before two
-    /// samples.
+    /// Relative standard error of the picture, see [`FilmStats::noise`]; none before two samples.
     pub noise: Option<f64>,
     /// Whether the limit is reached.
     pub finished: bool,
@@ -53,22 +52,20 @@ pub fn shown_pixel(film: &Film, pixel: UVec2) -> UVec2 {
 }
 
 /// Reads the picture into `pixels`, which gets the size of the film; returns the noise (see
-/// [`super::FilmStats::noise`]). Runs on the threads of the calling pool.
+/// [`FilmStats::noise`]). Runs on the threads of the calling pool.
 pub fn resolve(film: &Film, pixels: &mut Vec<[f32; 4]>) -> Option<f64> {
     let size = film.size();
     pixels.resize(size.x as usize * size.y as usize, [0.0; 4]);
-    let lines: Vec<Spread> = pixels
+    let lines: Vec<LineStats> = pixels
         .par_chunks_mut(size.x as usize)
         .enumerate()
         .map(|(y, line)| resolve_line(film, y as u32, line))
         .collect();
-    let mut total = Spread::default();
-    lines.iter().for_each(|line| total.add(line));
-    total.noise()
+    FilmStats::from_lines(film, &lines).noise
 }
 
-fn resolve_line(film: &Film, y: u32, line: &mut [[f32; 4]]) -> Spread {
-    let mut spread = Spread::default();
+fn resolve_line(film: &Film, y: u32, line: &mut [[f32; 4]]) -> LineStats {
+    let mut stats = LineStats::default();
     // Neighbors that show the same block are read once.
     let mut last = (UVec2::MAX, [0.0; 4]);
     for (x, out) in line.iter_mut().enumerate() {
@@ -79,7 +76,7 @@ fn resolve_line(film: &Film, y: u32, line: &mut [[f32; 4]]) -> Spread {
             if let Some(estimate) = PixelEstimate::of(film, shown) {
                 let mean = estimate.mean();
                 if shown == pixel {
-                    spread.add(&Spread::with_mean(&estimate, mean));
+                    stats.add(&estimate, mean);
                 }
                 let [r, g, b] = mean.map(|value| value as f32);
                 last.1 = [r, g, b, estimate.alpha() as f32];
@@ -87,7 +84,7 @@ fn resolve_line(film: &Film, y: u32, line: &mut [[f32; 4]]) -> Spread {
         }
         *out = last.1;
     }
-    spread
+    stats
 }
 
 /// The figures of `film` after `seconds` of rendering.
@@ -112,7 +109,6 @@ pub(crate) fn render_stats(
 mod tests {
     use super::*;
     use crate::math::Rgb;
-    use crate::render::FilmStats;
     use crate::render::synthetic::Uniform;
     use crate::transport::{PathSample, PixelSampler};
 

@@ -404,7 +404,7 @@ mod tests {
         assert!(!schedule.publish_due(3.2));
         assert!(schedule.publish_due(3.4));
         schedule.published(0.5, 0.02);
-        assert!(!schedule.publish_due(0.7) && schedule.publish_due(0.9));
+        assert!(!schedule.publish_due(0.7) && schedule.publish_due(1.01));
         schedule.published(100.0, 0.1);
         assert!(!schedule.publish_due(102.0), "a picture of 100 ms has to wait for 2.5 s");
         assert!(schedule.publish_due(102.6));
