@@ -105,8 +105,9 @@ impl App {
         if let Some(stats) = &mut self.stats {
             stats.frame();
         }
-        let mut news = self.engine.poll();
-        self.take_in(&ctx, &mut news);
+        let news = self.engine.poll();
+        self.take_in(&ctx, news);
+        self.take_in_arrivals(&ctx);
         self.editor.begin_frame(&ctx);
         let mut commands = Command::pressed(&ctx);
         self.layout(ui, &mut commands);
@@ -129,8 +130,8 @@ impl App {
         }
     }
 
-    fn take_in(&mut self, ctx: &Context, news: &mut Vec<News>) {
-        for item in news.drain(..) {
+    fn take_in(&mut self, ctx: &Context, news: Vec<News>) {
+        for item in news {
             match item {
                 News::Opened { source, settings, notes } => {
                     self.notes = notes;
@@ -144,13 +145,13 @@ impl App {
                 News::Failed(text) => self.notices.failed(text),
                 News::Refused(text) => self.notices.refused(text),
                 News::Accepted => self.notices.clear(Level::Refused),
-                News::Started(generation) => {
-                    if let Some(stats) = &mut self.stats {
-                        stats.started(generation);
-                    }
-                }
+                News::Started(generation) => self.note_start(generation),
             }
         }
+    }
+
+    /// Takes in what other threads and the desktop have brought since the last frame.
+    fn take_in_arrivals(&mut self, ctx: &Context) {
         if let (Some(stats), Some(picture)) = (&mut self.stats, self.engine.picture()) {
             stats.shown(picture.generation);
         }
@@ -260,7 +261,7 @@ impl App {
         if let Some(wait) = self.engine.update(&self.editor.document, size, &mut news) {
             ctx.request_repaint_after(wait.max(Duration::from_millis(1)));
         }
-        self.take_in_started(&news);
+        self.take_in(ctx, news);
     }
 
     /// The size of the film: its own or the window's; `None` before the first frame.
@@ -273,12 +274,9 @@ impl App {
         self.viewport.film_size()
     }
 
-    fn take_in_started(&mut self, news: &[News]) {
-        let Some(stats) = &mut self.stats else { return };
-        for item in news {
-            if let News::Started(generation) = item {
-                stats.started(*generation);
-            }
+    fn note_start(&mut self, generation: u64) {
+        if let Some(stats) = &mut self.stats {
+            stats.started(generation);
         }
     }
 

@@ -33,11 +33,11 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>, window: Option<UVec2>, largest: 
         } else if let Some(size) = window {
             row(ui, "", "", |ui| ui.weak(format!("{} × {} pixels", size.x, size.y)));
         }
-        if whole(ui, "Seed", "film.seed", &mut film.seed, "") {
+        if whole(ui, "Seed", "film.seed", &mut film.seed, None) {
             edit = Some("seed");
         }
         let mut spp = u64::from(film.spp);
-        if whole(ui, "Stop at", "film.spp", &mut spp, " spp") {
+        if whole(ui, "Stop at", "film.spp", &mut spp, Some("never")) {
             film.spp = u32::try_from(spp).unwrap_or(u32::MAX);
             edit = Some("samples per pixel");
         }
@@ -64,11 +64,24 @@ fn fixed_size(ui: &mut Ui, film: &mut FilmSettings, largest: u32) -> bool {
     .inner
 }
 
-fn whole(ui: &mut Ui, name: &str, key: &str, value: &mut u64, unit: &str) -> bool {
+/// A whole number; `none` is what 0 means in words.
+fn whole(ui: &mut Ui, name: &str, key: &str, value: &mut u64, none: Option<&str>) -> bool {
     let help = key_help(key);
     row(ui, name, &help, |ui| {
-        let field = DragValue::new(value).speed(0.1).suffix(unit);
-        let field = field.custom_parser(finite).update_while_editing(false);
+        let words = |value: f64| match none {
+            Some(none) if value == 0.0 => none.to_owned(),
+            Some(_) => format!("{value:.0} spp"),
+            None => format!("{value:.0}"),
+        };
+        let number = |text: &str| match none {
+            Some(none) if text.trim() == none => Some(0.0),
+            _ => finite(text.trim().trim_end_matches("spp")),
+        };
+        let field = DragValue::new(value)
+            .speed(0.1)
+            .custom_formatter(|value, _| words(value))
+            .custom_parser(number)
+            .update_while_editing(false);
         let field = ui.add_sized(vec2(space::NUMBER + 20.0, space::ROW_HEIGHT), field);
         field.accessible_name(name).on_hover_text(&help).changed()
     })
