@@ -9,6 +9,7 @@ use egui::{
 
 use super::theme::{color, space};
 use crate::scene::keys;
+use crate::scene::settings::Color;
 
 /// The help of a key of the scene file, ready for a tooltip.
 pub fn key_help(path: &str) -> String {
@@ -186,6 +187,26 @@ pub fn segments(ui: &mut Ui, choices: &[(&str, &str)], chosen: Option<usize>) ->
         }
     });
     clicked
+}
+
+/// The one number that a slider shows for a color: its largest channel.
+pub fn strength(color: Color) -> f32 {
+    color.rgb().max_element()
+}
+
+/// `color` made as strong as `strength`, keeping its hue.
+pub fn scaled(color: Color, strength: f32) -> Color {
+    let present = color.rgb().max_element();
+    match color {
+        Color::Rgb(rgb) if present > 0.0 => Color::Rgb(rgb.map(|c| c * strength / present)),
+        _ => Color::Gray(strength),
+    }
+}
+
+/// Gray where the channels agree.
+pub fn from_rgb(rgb: [f32; 3]) -> Color {
+    let color = Color::Rgb(rgb);
+    color.gray().map_or(color, Color::Gray)
 }
 
 #[cfg(test)]
