@@ -1,8 +1,11 @@
 //! Flambeau: interactive, progressive preview of fire, smoke, fog and cloud.
 
+pub mod cli;
 pub mod error;
+pub mod image;
 pub mod light;
 pub mod math;
+pub mod render;
 pub mod sampling;
 pub mod scene;
 pub mod surface;

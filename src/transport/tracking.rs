@@ -19,11 +19,9 @@ use crate::{
     },
 };
 
-/// Least collisions along a volume's brightest chord where emission is gathered by collisions, so
-/// that fire without soot is found at all.
-const EMISSION_FLOOR: f32 = 0.05;
-/// Where something emits, at least this share of the majorant is given to absorption events.
-const ABSORPTION_FLOOR: f32 = 0.1;
+/// Least collisions along a volume's brightest chord where emission is gathered by collisions, and
+/// least absorptions where it is gathered by those, so that fire without soot is found at all.
+const EMISSION_FLOOR: f32 = 0.1;
 /// Below this weight a walk of transmittance goes on by chance only.
 const ROULETTE_BELOW: f32 = 0.05;
 
@@ -37,14 +35,19 @@ trait Walk {
         false
     }
 
-    /// A tentative collision at parameter `t` under the majorant `rate`.
-    fn collide(
-        &mut self,
-        medium: &MediumRay,
-        t: f32,
-        rate: f32,
-        rng: &mut PathRng,
-    ) -> ControlFlow<()>;
+    /// A tentative collision under the majorant [`Collision::rate`].
+    fn collide(&mut self, medium: &MediumRay, at: &Collision, rng: &mut PathRng)
+    -> ControlFlow<()>;
+}
+
+/// A tentative collision.
+struct Collision<'s> {
+    /// Where it is, as a ray parameter.
+    t: f32,
+    /// The majorant μ̄ it was drawn under.
+    rate: f32,
+    /// The segment it lies in.
+    segment: &'s Segment,
 }
 
 /// Calls `walk` for each tentative collision along the medium, from near to far, and returns how
@@ -69,7 +72,8 @@ fn track(mut medium: MediumRay, rng: &mut PathRng, walk: &mut impl Walk) -> u32 
             }
             t += step;
             collisions += 1;
-            if walk.collide(&medium, t, rate, rng).is_break() {
+            let at = Collision { t, rate, segment: &segment };
+            if walk.collide(&medium, &at, rng).is_break() {
                 return collisions;
             }
             optical_distance = rng.exponential();
@@ -126,11 +130,10 @@ pub fn transmittance(medium: MediumRay, rng: &mut PathRng) -> (Rgb, u32) {
         fn collide(
             &mut self,
             medium: &MediumRay,
-            t: f32,
-            rate: f32,
+            at: &Collision,
             rng: &mut PathRng,
         ) -> ControlFlow<()> {
-            self.weight *= null_coefficient(rate, medium.coefficients(t).mu_t) / rate;
+            self.weight *= null_coefficient(at.rate, medium.coefficients(at.t).mu_t) / at.rate;
             roulette(&mut self.weight, rng)
         }
     }
@@ -173,13 +176,12 @@ pub fn emission(medium: MediumRay, strategy: &Strategy, rng: &mut PathRng) -> Gl
         fn collide(
             &mut self,
             medium: &MediumRay,
-            t: f32,
-            rate: f32,
+            at: &Collision,
             rng: &mut PathRng,
         ) -> ControlFlow<()> {
-            let c = medium.coefficients(t);
-            self.emission += self.weight * c.emission / rate;
-            self.weight *= null_coefficient(rate, c.mu_t) / rate;
+            let c = medium.coefficients(at.t);
+            self.emission += self.weight * c.emission / at.rate;
+            self.weight *= null_coefficient(at.rate, c.mu_t) / at.rate;
             roulette(&mut self.weight, rng)
         }
     }
@@ -315,16 +317,16 @@ impl Walk for Scattering<'_> {
     fn collide(
         &mut self,
         medium: &MediumRay,
-        t: f32,
-        rate: f32,
+        at: &Collision,
         rng: &mut PathRng,
     ) -> ControlFlow<()> {
+        let &Collision { t, rate, .. } = at;
         let c = medium.coefficients(t);
         if self.gather == Gather::EveryCollision {
             self.emission += self.weight * c.emission / rate;
         }
         let mu_n = null_coefficient(rate, c.mu_t);
-        let absorb = self.absorption_share(&c, rate);
+        let absorb = self.absorption_share(&c, at.segment);
         let color = self.throughput * self.weight;
         let [a, s, n] = [absorb, c.mu_s, mu_n].map(|mu| mean(color * mu));
         let total = a + s + n;
@@ -353,12 +355,12 @@ impl Walk for Scattering<'_> {
 
 impl Scattering<'_> {
     /// μ_a, or where absorption alone shows the emission, enough of it to show: ε may be positive
-    /// with little or no μ_a. The other events keep their weights μ/(μ̄ P), so that the floor
-    /// absorbs nothing by itself.
-    fn absorption_share(&self, c: &Coefficients, rate: f32) -> Rgb {
+    /// with little or no μ_a. The other events make up for the share by their weights, so that
+    /// the floor absorbs nothing by itself.
+    fn absorption_share(&self, c: &Coefficients, segment: &Segment) -> Rgb {
         let mu_a = c.mu_a();
         if self.gather == Gather::Absorption && c.emission.max_element() > 0.0 {
-            mu_a.max(Rgb::splat(ABSORPTION_FLOOR * rate))
+            mu_a.max(Rgb::splat(EMISSION_FLOOR * segment.emission_rate))
         } else {
             mu_a
         }

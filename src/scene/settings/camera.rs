@@ -16,7 +16,7 @@ pub struct CameraSettings {
     /// The direction that points up in the picture.
     pub up: [f32; 3],
     /// The full horizontal angle of view.
-    #[schemars(range(min = 0.1, max = 179.0), extend("unit" = "degrees"))]
+    #[schemars(extend("unit" = "degrees", "exclusiveMinimum" = 0.0, "maximum" = 179.9))]
     pub fov_x: f32,
 }
 

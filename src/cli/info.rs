@@ -1,0 +1,219 @@
+//! `flambeau info`: what is in a volume, a snapshot or a scene.
+
+use std::fmt::{Debug, Write};
+use std::path::Path;
+
+use serde::Serialize;
+
+use super::{Exit, Refusal, print};
+use crate::error::{NO_PROGRESS, Result};
+use crate::image::exr::{Info, read_info};
+use crate::scene::settings::VolumeSettings;
+use crate::scene::{self, GridDescription, Settings, VolumeCache};
+use crate::volume::vdb::GridInfo;
+
+#[derive(Debug, clap::Args)]
+pub struct Arguments {
+    /// A volume, a snapshot (.exr), a scene (.toml) or `builtin:NAME`.
+    #[arg(value_name = "FILE")]
+    file: String,
+}
+
+pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
+    let file = arguments.file.as_str();
+    let ending = Path::new(file).extension().and_then(|ending| ending.to_str());
+    let text = match ending.unwrap_or_default().to_ascii_lowercase().as_str() {
+        "exr" => snapshot(&read_info(Path::new(file))?),
+        "toml" => summary(&scene::load(file)?),
+        // An embedded name may be that of a volume or of a scene.
+        _ if file.starts_with("builtin:") => match volume(file) {
+            Ok(text) => text,
+            Err(_) => summary(&scene::load(file)?),
+        },
+        _ => volume(file)?,
+    };
+    print(&text)?;
+    Ok(Exit::Done)
+}
+
+/// Lines of `name value` with the values in one column.
+#[derive(Default)]
+struct Report(String);
+
+impl Report {
+    fn title(&mut self, title: &str) {
+        // Writing to a String cannot fail.
+        let _ = writeln!(self.0, "{title}");
+    }
+
+    fn row(&mut self, name: &str, value: impl AsRef<str>) {
+        let _ = writeln!(self.0, "    {name:<13} {}", value.as_ref());
+    }
+}
+
+fn volume(file: &str) -> Result<String> {
+    let cache = VolumeCache::default();
+    let description = scene::describe(file, &cache, NO_PROGRESS)?;
+    let opened = cache.file(file, NO_PROGRESS)?;
+    let directory = opened.directory();
+    let mut report = Report::default();
+    let (version, count) = (directory.version, description.grids.len());
+    report.title(&format!("OpenVDB file, format {version}, {count} grids"));
+    for (name, value) in &description.metadata {
+        report.row(name, value);
+    }
+    for (grid, info) in std::iter::zip(&description.grids, &directory.grids) {
+        describe_grid(&mut report, grid, info);
+    }
+    Ok(report.0)
+}
+
+fn describe_grid(report: &mut Report, grid: &GridDescription, info: &GridInfo) {
+    report.title(&format!("\"{}\"", grid.name));
+    report.row("type", &grid.type_name);
+    report.row("class", &grid.class);
+    if let Some(reason) = &grid.unsupported {
+        report.row("not readable", reason);
+        return;
+    }
+    report.row("voxel size", format!("{:?}", grid.voxel_size));
+    if let Some(voxels) = &grid.voxels {
+        report.row("range", format!("{} .. {}, mean {}", voxels.min, voxels.max, voxels.mean));
+        report.row("active voxels", voxels.active.to_string());
+        let bounds = voxels.bounds.map(|[low, high]| format!("{low:?} .. {high:?}"));
+        report.row("bounds", bounds.unwrap_or_else(|| "empty".to_owned()));
+        report.row("memory", format!("{:.1} MiB", voxels.memory_bytes as f64 / 1024.0 / 1024.0));
+    }
+    let map = &info.transform.index_to_world;
+    for row in 0..3 {
+        let axes = map.matrix3.row(row);
+        let name = if row == 0 { "transform" } else { "" };
+        let row = [axes.x, axes.y, axes.z, map.translation[row]];
+        report.row(name, format!("{row:?}"));
+    }
+}
+
+fn snapshot(info: &Info) -> String {
+    let mut report = Report::default();
+    report.title(&format!("EXR, {} x {} pixels", info.size.x, info.size.y));
+    report.row("layers", layers(&info.channels));
+    let Some(header) = &info.header else {
+        report.row("note", "not written by Flambeau, so it cannot be continued");
+        return report.0;
+    };
+    report.row("version", &header.version);
+    report.row("samples", format!("{} per pixel", info.samples));
+    report.row("seed", header.seed.to_string());
+    report.row("paths", info.totals.paths.to_string());
+    report.row("steps", info.totals.tracking_steps.to_string());
+    report.row("not finite", info.totals.non_finite.to_string());
+    report.row("wall time", format!("{:.2} s", header.wall_seconds));
+    let (setup, render) = (header.cpu_seconds_setup, header.cpu_seconds_render);
+    report.row("CPU time", format!("{setup:.2} s setup, {render:.2} s rendering"));
+    report.title("\nStrategy\n");
+    report.title(&header.strategy);
+    report.title("Scene\n");
+    report.title(&header.scene);
+    report.0
+}
+
+/// Layers with their channels; those that only serve to go on are counted.
+fn layers(channels: &[String]) -> String {
+    let (state, visible): (Vec<_>, Vec<_>) =
+        channels.iter().partition(|channel| channel.starts_with("state."));
+    let mut layers: Vec<(&str, Vec<&str>)> = Vec::new();
+    for channel in visible {
+        let (layer, component) = channel.rsplit_once('.').unwrap_or(("", channel));
+        match layers.iter_mut().find(|(name, _)| *name == layer) {
+            Some((_, components)) => components.push(component),
+            None => layers.push((layer, vec![component])),
+        }
+    }
+    let mut words: Vec<String> = layers
+        .iter()
+        .map(|(layer, components)| {
+            let dot = if layer.is_empty() { "" } else { "." };
+            format!("{layer}{dot}({})", components.join(" "))
+        })
+        .collect();
+    if !state.is_empty() {
+        words.push(format!("state ({} channels)", state.len()));
+    }
+    words.join(", ")
+}
+
+fn summary(settings: &Settings) -> String {
+    let mut report = Report::default();
+    let [width, height] = settings.film.size;
+    report.title("Scene");
+    let spp = match settings.film.spp {
+        0 => "until stopped".to_owned(),
+        spp => format!("{spp} samples per pixel"),
+    };
+    report.row("film", format!("{width} x {height} pixels, {spp}, seed {}", settings.film.seed));
+    let camera = &settings.camera;
+    let (position, target) = (camera.position, camera.target);
+    report.row("camera", format!("{position:?} to {target:?}, {} degrees", camera.fov_x));
+    report.row("environment", format!("radiance {}", plain(&settings.environment.radiance)));
+    for volume in &settings.volume {
+        report.row("volume", describe_volume(volume));
+    }
+    for light in &settings.light {
+        report.row("light", format!("{}, {}", plain(&light.kind), plain(&light.intensity)));
+    }
+    for surface in &settings.surface {
+        let material = surface.material.map_or("no material".to_owned(), |m| plain(&m.kind));
+        report.row("surface", format!("{}, {material}", plain(&surface.shape)));
+    }
+    let strategy = &settings.strategy;
+    let preset = strategy.preset().map_or("mixed", |preset| preset.name());
+    report.row("strategy", preset);
+    for (name, on) in [
+        ("emission_decoupling", strategy.emission_decoupling),
+        ("emission_ratio_tracking", strategy.emission_ratio_tracking),
+        ("majorant_boost", strategy.majorant_boost),
+    ] {
+        report.row("", format!("{name} = {on}"));
+    }
+    report.0
+}
+
+fn describe_volume(volume: &VolumeSettings) -> String {
+    let what = match (&volume.file, &volume.shape) {
+        (Some(file), _) => file.clone(),
+        (None, Some(shape)) => plain(shape),
+        (None, None) => "empty".to_owned(),
+    };
+    let name = if volume.name.is_empty() { String::new() } else { format!("\"{}\" ", volume.name) };
+    format!(
+        "{name}{what}, density {} x {}, albedo {}, g {}, emission {}",
+        plain(&volume.density.scale),
+        volume.density_grid(),
+        plain(&volume.albedo),
+        volume.phase.g,
+        plain(&volume.emission.mode)
+    )
+}
+
+/// A value as a scene file has it, without quotes.
+fn plain(value: &(impl Serialize + Debug)) -> String {
+    match serde_json::to_value(value) {
+        Ok(serde_json::Value::String(text)) => text,
+        Ok(serde_json::Value::Number(number)) => {
+            number.as_f64().map_or(number.to_string(), |value| (value as f32).to_string())
+        }
+        _ => format!("{value:?}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn channels_are_gathered_into_layers() {
+        let names = ["A", "B", "emission.G", "emission.R", "state.alpha.A", "state.x.R"];
+        let names: Vec<String> = names.map(str::to_owned).to_vec();
+        assert_eq!(layers(&names), "(A B), emission.(G R), state (2 channels)");
+    }
+}

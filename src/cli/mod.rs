@@ -1,0 +1,128 @@
+//! The command line: one file a command. `main` parses, runs and reports.
+
+mod cpu_time;
+mod info;
+mod keys;
+mod outputs;
+mod render;
+mod replay;
+mod scene_source;
+mod stats;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use crate::error::Error;
+
+/// Interactive, progressive preview of fire, smoke, fog and cloud.
+#[derive(Debug, Parser)]
+#[command(name = "flambeau", version, args_conflicts_with_subcommands = true)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Option<Command>,
+    /// A scene file, a volume or `builtin:NAME` to open in the window; without one the default
+    /// scene.
+    #[arg(value_name = "SCENE|VOLUME")]
+    scene: Option<String>,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Render without a window.
+    Render(Box<render::Arguments>),
+    /// Print every key of the scene file: type, unit, default, range, help.
+    Keys(keys::Arguments),
+    /// Say what is in a volume, a snapshot or a scene.
+    Info(info::Arguments),
+    /// Follow one path and print it vertex by vertex.
+    Replay(replay::Arguments),
+}
+
+/// How a command ended, and what the shell is told.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Exit {
+    Done = 0,
+    Failed = 1,
+    WrongUsage = 2,
+    Interrupted = 130,
+}
+
+/// Why a command could not do its work.
+struct Refusal {
+    error: Error,
+    exit: Exit,
+}
+
+impl From<Error> for Refusal {
+    fn from(error: Error) -> Self {
+        let exit = match error {
+            Error::Cancelled => Exit::Interrupted,
+            _ => Exit::Failed,
+        };
+        Self { error, exit }
+    }
+}
+
+impl Refusal {
+    /// What was asked for makes no sense, whatever the files.
+    fn usage(error: Error) -> Self {
+        Self { error, exit: Exit::WrongUsage }
+    }
+}
+
+/// Runs the program on the arguments of the process.
+pub fn run() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            // Help and version come this way too, and are no errors. Where the terminal is gone
+            // there is nobody to tell.
+            let _ = error.print();
+            let exit = if error.use_stderr() { Exit::WrongUsage } else { Exit::Done };
+            return ExitCode::from(exit as u8);
+        }
+    };
+    let result = match arguments.command {
+        Some(Command::Render(arguments)) => render::run(&arguments),
+        Some(Command::Keys(arguments)) => keys::run(&arguments),
+        Some(Command::Info(arguments)) => info::run(&arguments),
+        Some(Command::Replay(arguments)) => replay::run(&arguments),
+        None => open_window(arguments.scene),
+    };
+    let exit = result.unwrap_or_else(|refusal| {
+        eprintln!("flambeau: {}", refusal.error);
+        refusal.exit
+    });
+    ExitCode::from(exit as u8)
+}
+
+#[cfg(not(feature = "gui"))]
+fn open_window(_: Option<String>) -> Result<Exit, Refusal> {
+    eprintln!(
+        "flambeau: this build has no window; use `flambeau render SCENE -o OUT.exr`, or build with \
+         the feature `gui`"
+    );
+    Ok(Exit::WrongUsage)
+}
+
+/// Prints to standard output; a reader that has gone (`flambeau keys | head`) is no error.
+fn print(text: &str) -> Result<(), Refusal> {
+    use std::io::{ErrorKind, Write};
+    match std::io::stdout().lock().write_all(text.as_bytes()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(Error::io("standard output", error).into())
+        }
+        _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_arguments_are_consistent() {
+        super::Arguments::command().debug_assert();
+    }
+}

@@ -1,0 +1,259 @@
+//! `flambeau render`: a picture without a window.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+use clap::Args;
+use glam::UVec2;
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::cpu_time::process_seconds;
+use super::outputs::{Output, check_folder, write_all};
+use super::scene_source::SceneArguments;
+use super::stats::{Spent, Stats};
+use super::{Exit, Refusal};
+use crate::error::{Error, Result};
+use crate::image::exr::{Header, Snapshot, read_snapshot};
+use crate::render::estimate::samples_per_pixel;
+use crate::render::schedule::Limits;
+use crate::render::{Film, FilmStats, Headless, Job, render_headless};
+use crate::scene::{self, Settings, VolumeCache};
+use crate::transport::Frame;
+
+/// Samples a pixel where neither the command line nor the scene says how many.
+const DEFAULT_SPP: u32 = 64;
+
+#[derive(Debug, Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// Where to write: .exr keeps all layers and can be continued, .png is as seen on screen, .npy
+    /// is the linear picture for scripts. Several are allowed.
+    #[arg(short, long = "output", value_name = "OUT", required = true)]
+    output: Vec<Output>,
+    /// Samples per pixel.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
+    spp: Option<u32>,
+    /// Stop after this many seconds of rendering.
+    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
+    time: Option<f64>,
+    /// Number of threads; one a core if absent. The picture does not depend on it.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Write the figures of the render as JSON.
+    #[arg(long, value_name = "STATS.json")]
+    stats: Option<PathBuf>,
+    /// Go on from a snapshot of the same scene.
+    #[arg(long, value_name = "OUT.exr")]
+    resume: Option<PathBuf>,
+}
+
+fn parse_seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(seconds) if seconds > 0.0 && seconds.is_finite() => Ok(seconds),
+        _ => Err("expected a number of seconds above 0".to_owned()),
+    }
+}
+
+pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
+    let start = Instant::now();
+    let interrupt = listen_for_interrupt()?;
+    let go_on = |_: f32| !interrupt.load(Ordering::Relaxed);
+    let cache = VolumeCache::default();
+    let mut settings = arguments.scene.settings(&cache, &go_on)?;
+    let limits = limits(arguments, &mut settings);
+    check_folders(arguments)?;
+    let resumed = match &arguments.resume {
+        Some(path) => Some(resume(path, &settings)?),
+        None => None,
+    };
+    let scene = scene::build(&settings, &cache, &go_on)?;
+    let cpu_setup = process_seconds();
+
+    let (film, before) = match resumed {
+        Some(Snapshot { film, header }) => (Some(film), spent_before(&header)),
+        None => (None, Spent::default()),
+    };
+    let size = UVec2::from_array(settings.film.size);
+    let sampler = Arc::new(Frame { scene: Arc::new(scene), size, seed: settings.film.seed });
+    let threads = arguments.threads.map(usize::from);
+    let job = Job { sampler, size, limits, resume: film, threads };
+    let render = show_progress(job, &interrupt)?;
+    let spent = before.plus(Spent {
+        wall: start.elapsed().as_secs_f64(),
+        cpu_setup,
+        cpu_render: process_seconds() - cpu_setup,
+    });
+    finish(arguments, &settings, &render, spent)
+}
+
+/// When to stop, after the command line, the scene and the default, in this order. The number of
+/// samples becomes part of the settings, so that the header of a snapshot tells it.
+fn limits(arguments: &Arguments, settings: &mut Settings) -> Limits {
+    let spp = match (arguments.spp, arguments.time, settings.film.spp) {
+        (Some(spp), _, _) => spp,
+        (None, Some(_), _) => 0,
+        (None, None, 0) => {
+            eprintln!(
+                "flambeau: rendering {DEFAULT_SPP} samples per pixel; --spp or --time says otherwise"
+            );
+            DEFAULT_SPP
+        }
+        (None, None, spp) => spp,
+    };
+    settings.film.spp = spp;
+    Limits { spp, seconds: arguments.time }
+}
+
+/// Finds out before hours of rendering what could not be written after them.
+fn check_folders(arguments: &Arguments) -> Result<()> {
+    arguments.output.iter().try_for_each(Output::check_folder)?;
+    arguments.stats.as_deref().map_or(Ok(()), check_folder)
+}
+
+/// The snapshot to go on from, if it is one of this scene.
+fn resume(path: &PathBuf, settings: &Settings) -> Result<Snapshot> {
+    let snapshot = read_snapshot(path)?;
+    let name = path.display().to_string();
+    let folder = std::path::Path::new("/");
+    let theirs = scene::parse(&snapshot.header.scene, &name, folder, &Default::default())?;
+    if let Some(difference) = difference(&theirs, settings)? {
+        let reason = format!(
+            "the snapshot was rendered with other settings than this scene: {difference}. Render \
+             anew, or give the settings it has"
+        );
+        return Err(Error::invalid(name, "", reason));
+    }
+    if snapshot.header.version != env!("CARGO_PKG_VERSION") {
+        eprintln!(
+            "flambeau: {name} was begun with version {}; its samples and those of this version may \
+             differ",
+            snapshot.header.version
+        );
+    }
+    Ok(snapshot)
+}
+
+/// The first line in which two settings differ, the number of samples apart.
+fn difference(theirs: &Settings, ours: &Settings) -> Result<Option<String>> {
+    let text = |settings: &Settings| {
+        let mut settings = settings.clone();
+        settings.film.spp = 0;
+        scene::to_toml(&settings, None)
+    };
+    let (theirs, ours) = (text(theirs)?, text(ours)?);
+    if theirs == ours {
+        return Ok(None);
+    }
+    let mut section = "";
+    let mut lines = std::iter::zip(theirs.lines(), ours.lines());
+    let different = lines.find(|(theirs, ours)| {
+        if theirs == ours && theirs.starts_with('[') {
+            section = theirs;
+        }
+        theirs != ours
+    });
+    Ok(Some(match different {
+        Some((theirs, ours)) => format!("{section} {theirs:?} there, {ours:?} here"),
+        None => "one has more volumes, lights or surfaces than the other".to_owned(),
+    }))
+}
+
+fn spent_before(header: &Header) -> Spent {
+    Spent {
+        wall: header.wall_seconds,
+        cpu_setup: header.cpu_seconds_setup,
+        cpu_render: header.cpu_seconds_render,
+    }
+}
+
+/// A flag that Ctrl-C sets; a second one ends the program at once.
+fn listen_for_interrupt() -> Result<Arc<AtomicBool>> {
+    let interrupt = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&interrupt);
+    ctrlc::set_handler(move || {
+        if flag.swap(true, Ordering::Relaxed) {
+            std::process::exit(Exit::Interrupted as i32);
+        }
+    })
+    .map_err(|e| Error::invalid("", "Ctrl-C", format!("cannot listen for it: {e}")))?;
+    Ok(interrupt)
+}
+
+/// Renders with a progress bar on standard error, if that is a terminal.
+fn show_progress(job: Job, interrupt: &AtomicBool) -> Result<Headless> {
+    const STEPS: u64 = 1000;
+    let limits = job.limits;
+    let before = job.resume.as_ref().map_or(0.0, samples_per_pixel);
+    let bar = ProgressBar::new(STEPS);
+    let style = ProgressStyle::with_template("{bar:40} {msg} · {elapsed} · {eta} left");
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    let result = render_headless(job, interrupt, &mut |film: &Film, seconds: f64| {
+        let samples = samples_per_pixel(film);
+        let by_samples = match limits.spp {
+            0 => 0.0,
+            spp => (samples - before) / (f64::from(spp) - before),
+        };
+        let by_time = limits.seconds.map_or(0.0, |end| seconds / end);
+        bar.set_position((by_samples.max(by_time) * STEPS as f64) as u64);
+        let rate = film.totals.paths as f64 / film.size().as_dvec2().element_product();
+        bar.set_message(format!("{rate:.1} spp"));
+    });
+    bar.finish_and_clear();
+    result
+}
+
+/// Writes what there is and says how it went.
+fn finish(
+    arguments: &Arguments,
+    settings: &Settings,
+    render: &Headless,
+    spent: Spent,
+) -> Result<Exit, Refusal> {
+    let film = &render.film;
+    let strategy = settings.strategy;
+    let header = Header {
+        scene: scene::to_toml(settings, None)?,
+        strategy: toml::to_string(&strategy)
+            .map_err(|e| Error::invalid("", "strategy", e.to_string()))?,
+        seed: settings.film.seed,
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        wall_seconds: spent.wall,
+        cpu_seconds_setup: spent.cpu_setup,
+        cpu_seconds_render: spent.cpu_render,
+    };
+    let figures = render.pool.install(|| FilmStats::of(film));
+    let written = render.pool.install(|| write_all(&arguments.output, film, &header));
+    if let Some(path) = &arguments.stats {
+        let threads = render.pool.threads();
+        Stats::new(film, &figures, spent, settings.film.seed, threads, strategy).write(path)?;
+    }
+    written?;
+    report(arguments, render, &figures);
+    if let Some(failure) = &render.failure {
+        return Err(Error::invalid("", "", failure.to_string()).into());
+    }
+    Ok(if render.interrupted { Exit::Interrupted } else { Exit::Done })
+}
+
+fn report(arguments: &Arguments, render: &Headless, figures: &FilmStats) {
+    let totals = render.film.totals;
+    let noise = figures.noise.map_or(String::new(), |n| format!(", noise {:.2} %", n * 100.0));
+    let names: Vec<String> =
+        arguments.output.iter().map(|output| output.path().display().to_string()).collect();
+    eprintln!(
+        "flambeau: {}{:.4} samples per pixel in {:.1} s{noise}: {}",
+        if render.interrupted { "interrupted after " } else { "" },
+        figures.samples_per_pixel,
+        render.seconds,
+        names.join(", ")
+    );
+    if totals.non_finite > 0 {
+        eprintln!("flambeau: {} samples were not finite and count as black", totals.non_finite);
+    }
+    if totals.guard_hits > 0 {
+        eprintln!("flambeau: {} paths were cut by the guard", totals.guard_hits);
+    }
+}

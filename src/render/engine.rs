@@ -1,0 +1,116 @@
+//! The loop that both the window and the command line drive: ask the schedule, sample, take note.
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::film::Film;
+use super::pool::{Failure, Pool};
+use super::publish::{RenderStats, render_stats, resolve};
+use super::schedule::{Limits, Next, Schedule};
+use crate::transport::PixelSampler;
+
+/// One render under way.
+pub struct Engine {
+    sampler: Arc<dyn PixelSampler>,
+    film: Film,
+    schedule: Schedule,
+    seconds: f64,
+}
+
+/// What a step came to.
+#[derive(Debug)]
+pub enum Step {
+    /// A piece of work was done.
+    Worked,
+    /// It was broken off; the next step takes it up again.
+    Interrupted,
+    /// Nothing to do while paused.
+    Paused,
+    /// The limit is reached.
+    Done,
+    /// A sample could not be taken. The film is as consistent as ever.
+    Failed(Failure),
+}
+
+impl Engine {
+    /// A render on `film`, which may have samples already. `seconds_per_path` is what a path cost
+    /// before, if known.
+    pub fn new(
+        sampler: Arc<dyn PixelSampler>,
+        film: Film,
+        limits: Limits,
+        seconds_per_path: Option<f64>,
+    ) -> Self {
+        let (passes, _) = film.sample_range();
+        let schedule = Schedule::new(film.size(), passes, limits, seconds_per_path);
+        Self { sampler, film, schedule, seconds: 0.0 }
+    }
+
+    /// Does the next piece of work, unless `stop` says so earlier.
+    pub fn step(&mut self, pool: &Pool, paused: bool, stop: &(dyn Fn() -> bool + Sync)) -> Step {
+        let work = match self.schedule.next(self.seconds, paused) {
+            Next::Work(work) => work,
+            Next::Paused => return Step::Paused,
+            Next::Done => return Step::Done,
+        };
+        let start = Instant::now();
+        let outcome = pool.sample(&mut self.film, &*self.sampler, &work, stop);
+        let seconds = start.elapsed().as_secs_f64();
+        self.seconds += seconds;
+        self.schedule.measured(outcome.totals.paths, seconds);
+        if let Some(failure) = outcome.failure {
+            return Step::Failed(failure);
+        }
+        if !outcome.complete {
+            return Step::Interrupted;
+        }
+        self.schedule.completed(&work);
+        Step::Worked
+    }
+
+    /// Whether a picture should be shown now.
+    pub fn publish_due(&self) -> bool {
+        self.schedule.publish_due(self.seconds)
+    }
+
+    /// Reads the picture into `pixels` and returns its figures.
+    pub fn picture(&mut self, pool: &Pool, pixels: &mut Vec<[f32; 4]>) -> RenderStats {
+        let start = Instant::now();
+        let film = &self.film;
+        let noise = pool.install(|| resolve(film, pixels));
+        let cost = start.elapsed().as_secs_f64();
+        self.seconds += cost;
+        self.schedule.published(self.seconds, cost);
+        render_stats(&self.film, self.seconds, noise, self.is_finished())
+    }
+
+    /// Whether the limit is reached.
+    pub fn is_finished(&self) -> bool {
+        self.schedule.is_finished(self.seconds)
+    }
+
+    /// Whether there is something to show.
+    pub fn has_picture(&self) -> bool {
+        self.schedule.has_picture()
+    }
+
+    /// Whether every pixel has a sample of its own.
+    pub fn is_complete(&self) -> bool {
+        self.schedule.passes() > 0
+    }
+
+    /// Seconds of rendering so far.
+    pub fn seconds(&self) -> f64 {
+        self.seconds
+    }
+
+    /// The film as it stands.
+    pub fn film(&self) -> &Film {
+        &self.film
+    }
+
+    /// Ends the render; the film and what a path cost go on to the next.
+    pub fn into_parts(self) -> (Film, Option<f64>) {
+        (self.film, self.schedule.seconds_per_path())
+    }
+}

@@ -1,0 +1,283 @@
+//! Means, variances and the noise of a picture, all read from the accumulators.
+
+use glam::UVec2;
+use rayon::prelude::*;
+
+use super::film::{ACCUMULATORS, Film, Sums};
+use super::pair::{Pair, values};
+
+/// What the samples of one pixel say.
+#[derive(Clone, Copy, Debug)]
+pub struct PixelEstimate<'a> {
+    sums: &'a Sums,
+    samples: u32,
+}
+
+impl<'a> PixelEstimate<'a> {
+    /// The estimate of a pixel of `film`, once it has a sample.
+    pub fn of(film: &'a Film, pixel: UVec2) -> Option<Self> {
+        film.sums(pixel).map(|sums| Self { sums, samples: film.samples(pixel) })
+    }
+
+    /// Mean of the beauty.
+    pub fn mean(&self) -> [f64; 3] {
+        let mut total = [0.0; 3];
+        for accumulator in &self.sums.beauty[..self.filled()] {
+            let sum = values(accumulator);
+            (0..3).for_each(|c| total[c] += sum[c]);
+        }
+        total.map(|sum| sum / f64::from(self.samples))
+    }
+
+    /// Mean of one of the four parts, or of any RGB sum.
+    pub fn part(&self, part: impl Fn(&Sums) -> &[Pair; 3]) -> [f64; 3] {
+        values(part(self.sums)).map(|sum| sum / f64::from(self.samples))
+    }
+
+    /// Mean alpha.
+    pub fn alpha(&self) -> f64 {
+        self.sums.alpha.value() / f64::from(self.samples)
+    }
+
+    /// Mean distance of the first event or surface, over the samples that met one.
+    pub fn depth(&self) -> Option<f64> {
+        let count = self.sums.depth_count;
+        (count > 0).then(|| self.sums.depth.value() / f64::from(count))
+    }
+
+    /// Variance of the mean of each channel; none below two filled accumulators.
+    pub fn variance(&self) -> Option<[f64; 3]> {
+        let channel = |c: usize| self.variance_of(|rgb| rgb[c]);
+        Some([channel(0)?, channel(1)?, channel(2)?])
+    }
+
+    /// Variance of the mean of (R + G + B) / 3.
+    pub fn gray_variance(&self) -> Option<f64> {
+        self.variance_of(gray)
+    }
+
+    /// With K accumulators of n_k samples and means m_k, N = Σ n_k and m = Σ n_k m_k / N, the
+    /// variance of m is estimated by Σ n_k (m_k − m)² / ((K − 1) N). As the variance of m_k is
+    /// σ²/n_k this is unbiased for σ²/N whatever the n_k.
+    fn variance_of(&self, channel: impl Fn([f64; 3]) -> f64) -> Option<f64> {
+        let filled = self.filled();
+        if filled < 2 {
+            return None;
+        }
+        let mut sums = [0.0; ACCUMULATORS];
+        for (sum, accumulator) in std::iter::zip(&mut sums, &self.sums.beauty[..filled]) {
+            *sum = channel(values(accumulator));
+        }
+        let total = f64::from(self.samples);
+        let mean = sums.iter().sum::<f64>() / total;
+        let spread: f64 = (0..filled)
+            .map(|k| {
+                let n = f64::from(self.samples_of(k));
+                n * (sums[k] / n - mean).powi(2)
+            })
+            .sum();
+        Some(spread / ((filled - 1) as f64 * total))
+    }
+
+    fn filled(&self) -> usize {
+        (self.samples as usize).min(ACCUMULATORS)
+    }
+
+    fn samples_of(&self, accumulator: usize) -> u32 {
+        let (rounds, extra) =
+            (self.samples / ACCUMULATORS as u32, self.samples % ACCUMULATORS as u32);
+        rounds + u32::from((accumulator as u32) < extra)
+    }
+}
+
+/// (R + G + B) / 3.
+pub fn gray(rgb: [f64; 3]) -> f64 {
+    (rgb[0] + rgb[1] + rgb[2]) / 3.0
+}
+
+/// Figures of a whole film. Means run over the pixels that have what they need; a figure is absent
+/// where no pixel has.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FilmStats {
+    /// Mean over the pixels of their samples.
+    pub samples_per_pixel: f64,
+    /// Mean color.
+    pub mean_rgb: [f64; 3],
+    /// Mean over pixels of the variance of the gray mean.
+    pub gray_variance_of_mean: Option<f64>,
+    /// Mean over pixels of var / (mean² + ε²) of gray, with ε one hundredth of the picture's mean.
+    pub mean_relative_variance: Option<f64>,
+    /// The noise of the picture: the root of [`Self::mean_relative_variance`], that is the root
+    /// mean square of the pixels' relative standard errors. As light is never negative, no pixel
+    /// brings more than 1, so that a few fireflies cannot drown all others.
+    pub noise: Option<f64>,
+}
+
+impl FilmStats {
+    /// Measures `film`.
+    pub fn of(film: &Film) -> Self {
+        let lines: Vec<LineStats> = (0..film.size().y)
+            .into_par_iter()
+            .map(|y| {
+                let mut line = LineStats::default();
+                for x in 0..film.size().x {
+                    if let Some(pixel) = PixelEstimate::of(film, UVec2::new(x, y)) {
+                        line.add(&pixel, pixel.mean());
+                    }
+                }
+                line
+            })
+            .collect();
+        Self::from_lines(film, &lines)
+    }
+
+    /// The figures of `film` from those of its lines, from top to bottom.
+    pub(crate) fn from_lines(film: &Film, lines: &[LineStats]) -> Self {
+        let pixels: u64 = lines.iter().map(|line| line.pixels).sum();
+        let mean_rgb = [0, 1, 2].map(|c| {
+            let sum: f64 = lines.iter().map(|line| line.mean[c]).sum();
+            sum / pixels.max(1) as f64
+        });
+        let floor = (0.01 * gray(mean_rgb)).powi(2);
+        let measured: usize = lines.iter().map(|line| line.noise.len()).sum();
+        let over_measured = |value: &dyn Fn(f64, f64) -> f64| {
+            let pixels = lines.iter().flat_map(|line| &line.noise);
+            let sum: f64 = pixels.map(|&(gray, variance)| value(gray, variance)).sum();
+            (measured > 0).then(|| sum / measured as f64)
+        };
+        let relative = |gray: f64, variance: f64| match variance > 0.0 {
+            true => variance / (gray * gray + floor),
+            false => 0.0,
+        };
+        let mean_relative_variance = over_measured(&relative);
+        Self {
+            samples_per_pixel: samples_per_pixel(film),
+            mean_rgb,
+            gray_variance_of_mean: over_measured(&|_, variance| variance),
+            mean_relative_variance,
+            noise: mean_relative_variance.map(f64::sqrt),
+        }
+    }
+}
+
+/// Mean number of samples of a pixel.
+pub fn samples_per_pixel(film: &Film) -> f64 {
+    film.totals.paths as f64 / (f64::from(film.size().x) * f64::from(film.size().y))
+}
+
+/// What the figures of a film are formed from, for one line of it. Lines are summed in order, so
+/// that the figures do not depend on the number of threads.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct LineStats {
+    pixels: u64,
+    mean: [f64; 3],
+    /// Gray mean and its variance of every pixel that has one.
+    noise: Vec<(f64, f64)>,
+}
+
+impl LineStats {
+    /// Adds a pixel, whose mean is known already.
+    pub(crate) fn add(&mut self, pixel: &PixelEstimate<'_>, mean: [f64; 3]) {
+        self.pixels += 1;
+        (0..3).for_each(|c| self.mean[c] += mean[c]);
+        self.noise.extend(pixel.gray_variance().map(|variance| (gray(mean), variance)));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::synthetic::Uniform;
+    use crate::transport::PixelSampler;
+
+    fn sampled(size: UVec2, samples: u32) -> Film {
+        let mut film = Film::new(size).unwrap();
+        for y in 0..size.y {
+            for x in 0..size.x {
+                let pixel = UVec2::new(x, y);
+                (0..samples).for_each(|s| film.add(pixel, &Uniform::default().sample(pixel, s)));
+            }
+        }
+        film
+    }
+
+    /// A uniform variable on [0, 1) has variance 1/12, so a mean of n has 1/(12 n). The estimate
+    /// of each of many pixels scatters by about √(2/(K−1)); the mean over pixels must lie within
+    /// four standard errors, for equal and for unequal accumulators.
+    #[test]
+    fn variance_agrees_with_theory() {
+        for samples in [2, 3, 8, 13, 64] {
+            let size = UVec2::new(64, 64);
+            let film = sampled(size, samples);
+            let mut estimates = Vec::new();
+            for y in 0..size.y {
+                for x in 0..size.x {
+                    let pixel = PixelEstimate::of(&film, UVec2::new(x, y)).unwrap();
+                    estimates.push(pixel.variance().unwrap()[0]);
+                }
+            }
+            let n = estimates.len() as f64;
+            let mean = estimates.iter().sum::<f64>() / n;
+            let spread = estimates.iter().map(|e| (e - mean).powi(2)).sum::<f64>() / (n - 1.0);
+            let expected = 1.0 / (12.0 * f64::from(samples));
+            let z = (mean - expected) / (spread / n).sqrt();
+            assert!(z.abs() < 4.0, "{samples} samples: {mean} for {expected}, z = {z}");
+        }
+    }
+
+    #[test]
+    fn one_sample_has_no_variance() {
+        let film = sampled(UVec2::ONE, 1);
+        let pixel = PixelEstimate::of(&film, UVec2::ZERO).unwrap();
+        assert_eq!((pixel.variance(), pixel.gray_variance()), (None, None));
+        let stats = FilmStats::of(&film);
+        assert_eq!((stats.noise, stats.mean_relative_variance), (None, None));
+        assert_eq!(stats.samples_per_pixel, 1.0);
+    }
+
+    /// The three channels of the synthetic sampler are equal, so gray has their variance, and the
+    /// relative variance is that of a uniform variable, 1/(12 n) / (1/2)².
+    #[test]
+    fn figures_of_the_picture() {
+        let film = sampled(UVec2::new(70, 50), 16);
+        let stats = FilmStats::of(&film);
+        let variance = stats.gray_variance_of_mean.unwrap();
+        assert!((variance * 12.0 * 16.0 - 1.0).abs() < 0.05, "{variance}");
+        let relative = stats.mean_relative_variance.unwrap();
+        // E[var / mean²] is a little above 1/(12 n) / (1/4) as the mean is noisy too.
+        assert!((relative * 12.0 * 16.0 / 4.0 - 1.0).abs() < 0.1, "{relative}");
+        assert_eq!(stats.noise.unwrap().powi(2) as f32, relative as f32);
+        assert!((gray(stats.mean_rgb) - 0.5).abs() < 0.01);
+    }
+
+    #[test]
+    fn a_firefly_counts_as_one_pixel() {
+        let mut film = Film::new(UVec2::new(10, 10)).unwrap();
+        for y in 0..10 {
+            for x in 0..10 {
+                for s in 0..8 {
+                    let value = if (x, y, s) == (3, 3, 0) { 1.0e6 } else { 1.0 };
+                    let emission = crate::math::Rgb::splat(value);
+                    let sample = crate::transport::PathSample { emission, ..Default::default() };
+                    film.add(UVec2::new(x, y), &sample);
+                }
+            }
+        }
+        let stats = FilmStats::of(&film);
+        assert!((stats.noise.unwrap() - 0.1).abs() < 0.01, "{:?}", stats.noise);
+        assert!(stats.gray_variance_of_mean.unwrap() > 1.0e6);
+    }
+
+    #[test]
+    fn a_black_picture_has_no_noise() {
+        let mut film = Film::new(UVec2::new(3, 3)).unwrap();
+        for y in 0..3 {
+            for x in 0..3 {
+                (0..8).for_each(|_| film.add(UVec2::new(x, y), &Default::default()));
+            }
+        }
+        let stats = FilmStats::of(&film);
+        assert_eq!((stats.noise, stats.mean_relative_variance), (Some(0.0), Some(0.0)));
+        assert_eq!(stats.gray_variance_of_mean, Some(0.0));
+    }
+}

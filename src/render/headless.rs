@@ -1,0 +1,91 @@
+//! Rendering without a window.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use glam::UVec2;
+
+use super::engine::{Engine, Step};
+use super::film::Film;
+use super::pool::{Failure, Pool, Priority};
+use super::schedule::Limits;
+use crate::error::{Error, Result};
+use crate::transport::PixelSampler;
+
+/// What to render and for how long.
+pub struct Job {
+    /// What to sample.
+    pub sampler: Arc<dyn PixelSampler>,
+    /// Width and height in pixels.
+    pub size: UVec2,
+    /// When to stop. With neither limit only the interrupt ends the render.
+    pub limits: Limits,
+    /// A film to go on from.
+    pub resume: Option<Film>,
+    /// Number of threads; none: one a core.
+    pub threads: Option<usize>,
+}
+
+/// What a render came to.
+pub struct Headless {
+    /// The film, consistent however the render ended.
+    pub film: Film,
+    /// The threads that rendered it.
+    pub pool: Pool,
+    /// Seconds of rendering.
+    pub seconds: f64,
+    /// Whether the interrupt ended it.
+    pub interrupted: bool,
+    /// The sample that ended it.
+    pub failure: Option<Failure>,
+}
+
+/// Renders until a limit is reached or `interrupt` is set, calling `progress` with the film and
+/// the seconds so far after every piece of work (a few times a second).
+///
+/// # Errors
+/// When the film does not fit the memory, `resume` has another size or threads cannot be started.
+pub fn render_headless(
+    job: Job,
+    interrupt: &AtomicBool,
+    progress: &mut dyn FnMut(&Film, f64),
+) -> Result<Headless> {
+    let film = match job.resume {
+        Some(film) => same_size(film, job.size)?,
+        None => Film::new(job.size)?,
+    };
+    let pool = Pool::new(job.threads, Priority::Normal)?;
+    let mut engine = Engine::new(job.sampler, film, job.limits, None);
+    let stop = || interrupt.load(Ordering::Relaxed);
+    let mut failure = None;
+    let interrupted = loop {
+        if stop() && !engine.is_finished() {
+            break true;
+        }
+        match engine.step(&pool, false, &stop) {
+            Step::Worked => progress(engine.film(), engine.seconds()),
+            Step::Interrupted => {}
+            Step::Paused | Step::Done => break false,
+            Step::Failed(what) => {
+                failure = Some(what);
+                break false;
+            }
+        }
+    };
+    let seconds = engine.seconds();
+    let (film, _) = engine.into_parts();
+    Ok(Headless { film, pool, seconds, interrupted, failure })
+}
+
+/// `film`, if it has the wanted size.
+pub(crate) fn same_size(film: Film, size: UVec2) -> Result<Film> {
+    if film.size() == size {
+        return Ok(film);
+    }
+    let was = film.size();
+    let reason = format!(
+        "the picture to continue has {} x {} pixels and the scene asks for {} x {}",
+        was.x, was.y, size.x, size.y
+    );
+    Err(Error::invalid("", "film.size", reason))
+}

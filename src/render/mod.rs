@@ -1,0 +1,27 @@
+//! Progressive rendering: what a film keeps, what to sample next, and who does it.
+//!
+//! - [`film`]: per-pixel sums in independent accumulators, kept so that a render can be continued
+//!   bit for bit; [`estimate`] reads means and variances from them, [`publish`] whole pictures.
+//! - [`schedule`]: pure logic; from what is done and what it cost to the next piece of work.
+//! - [`pool`] does one piece of work on all threads, [`engine`] repeats that. The window's
+//!   [`session`] and the command line's [`headless`] both drive the same engine.
+
+pub mod engine;
+pub mod estimate;
+pub mod film;
+pub mod headless;
+pub mod pair;
+pub mod pool;
+pub mod publish;
+pub mod schedule;
+pub mod session;
+
+pub use estimate::FilmStats;
+pub use film::{ACCUMULATORS, Film};
+pub use headless::{Headless, Job, render_headless};
+pub use pool::Failure;
+pub use publish::{Picture, RenderStats};
+pub use session::{Request, Session};
+
+#[cfg(test)]
+pub(crate) mod synthetic;

@@ -1,0 +1,277 @@
+//! The threads that sample, and the one loop that does it.
+
+use std::cell::Cell;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::{Mutex, PoisonError};
+
+use glam::UVec2;
+use rayon::prelude::*;
+
+use super::film::{Film, Sums, TILE, Totals, Words, add_sample, row_pixels};
+use super::schedule::{Work, representative};
+use crate::error::{Error, Result};
+use crate::transport::PixelSampler;
+
+/// How the threads stand against the rest of the machine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Priority {
+    /// As any other program.
+    Normal,
+    /// Behind others, so that a window stays fluent while all cores sample. On systems other than
+    /// Linux the same as [`Priority::Normal`].
+    Background,
+}
+
+/// A private pool of sampling threads.
+pub struct Pool {
+    threads: rayon::ThreadPool,
+}
+
+/// A sample that could not be taken.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Failure {
+    /// The pixel and the sample in question; none where the render could not begin.
+    pub at: Option<(UVec2, u32)>,
+    /// What went wrong.
+    pub message: String,
+}
+
+impl std::fmt::Display for Failure {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self.at {
+            Some((pixel, sample)) => write!(
+                f,
+                "pixel {},{} failed at sample {sample}: {} \
+                 (`flambeau replay SCENE --pixel {},{} --sample {sample}` follows that path)",
+                pixel.x, pixel.y, self.message, pixel.x, pixel.y
+            ),
+            None => f.write_str(&self.message),
+        }
+    }
+}
+
+/// What became of a piece of work.
+#[derive(Debug)]
+pub struct Outcome {
+    /// Counts of what was done, all of it or not.
+    pub totals: Totals,
+    /// Whether the whole piece was done.
+    pub complete: bool,
+    /// The first failure that a thread reported.
+    pub failure: Option<Failure>,
+}
+
+impl Pool {
+    /// Starts `threads` threads, or as many as the machine has cores.
+    ///
+    /// # Errors
+    /// When the system refuses to start them.
+    pub fn new(threads: Option<usize>, priority: Priority) -> Result<Self> {
+        let threads = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads.unwrap_or(0))
+            .thread_name(|index| format!("sampler {index}"))
+            .start_handler(move |_| {
+                if priority == Priority::Background {
+                    yield_to_others();
+                }
+            })
+            .build()
+            .map_err(|e| Error::invalid("", "threads", format!("cannot start threads: {e}")))?;
+        Ok(Self { threads })
+    }
+
+    /// Number of threads.
+    pub fn threads(&self) -> usize {
+        self.threads.current_num_threads()
+    }
+
+    /// Runs parallel iterators of `f` on these threads.
+    pub fn install<R: Send>(&self, f: impl FnOnce() -> R + Send) -> R {
+        self.threads.install(f)
+    }
+
+    /// Does `work` on `film`. `stop` is asked before every sample; a piece broken off leaves the
+    /// film consistent, and doing the same work again completes it.
+    pub fn sample(
+        &self,
+        film: &mut Film,
+        sampler: &dyn PixelSampler,
+        work: &Work,
+        stop: &(dyn Fn() -> bool + Sync),
+    ) -> Outcome {
+        let failure = Mutex::new(None);
+        let row = Row { sampler, work, size: film.size(), tiles: film.tiles(), stop };
+        let first_row = work.tiles.start * TILE as usize;
+        let (counts, words) = film.tiles_mut(work.tiles.clone());
+        let (totals, complete) = self.threads.install(|| {
+            counts
+                .par_chunks_mut(TILE as usize)
+                .zip(words.par_chunks_mut(TILE as usize))
+                .enumerate()
+                .with_max_len(1)
+                .map(|(index, (counts, words))| {
+                    row.sample(first_row + index, counts, words, &failure)
+                })
+                .reduce(|| (Totals::default(), true), |a, b| (a.0.plus(b.0), a.1 && b.1))
+        });
+        film.totals = film.totals.plus(totals);
+        let failure = failure.into_inner().unwrap_or_else(PoisonError::into_inner);
+        Outcome { totals, complete: complete && failure.is_none(), failure }
+    }
+}
+
+/// What is common to the rows of one piece of work.
+struct Row<'a> {
+    sampler: &'a dyn PixelSampler,
+    work: &'a Work,
+    size: UVec2,
+    tiles: UVec2,
+    stop: &'a (dyn Fn() -> bool + Sync),
+}
+
+impl Row<'_> {
+    /// Samples one row of a tile; returns its counts and whether it was done to the end.
+    fn sample(
+        &self,
+        row: usize,
+        counts: &mut [u32],
+        words: &mut [Words],
+        failure: &Mutex<Option<Failure>>,
+    ) -> (Totals, bool) {
+        let at = Cell::new(None);
+        let totals = Cell::new(Totals::default());
+        // The sums of a pixel change only after its sample is complete, so a panicking sampler
+        // leaves nothing half done.
+        let done = catch_unwind(AssertUnwindSafe(|| {
+            let (first, width) = row_pixels(self.size, self.tiles, row);
+            for x in 0..width {
+                let pixel = UVec2::new(first.x + x, first.y);
+                if representative(pixel, self.work.stride, self.size) != pixel {
+                    continue;
+                }
+                let count = &mut counts[x as usize];
+                let sums: &mut Sums = bytemuck::cast_mut(&mut words[x as usize]);
+                while *count < self.work.target {
+                    if (self.stop)() {
+                        return false;
+                    }
+                    at.set(Some((pixel, *count)));
+                    let sample = self.sampler.sample(pixel, *count);
+                    totals.set(totals.get().plus(add_sample(count, sums, &sample)));
+                }
+            }
+            true
+        }));
+        let done = done.unwrap_or_else(|panic| {
+            let mut failure = failure.lock().unwrap_or_else(PoisonError::into_inner);
+            failure.get_or_insert(Failure { at: at.get(), message: panic_message(&*panic) });
+            false
+        });
+        (totals.get(), done)
+    }
+}
+
+fn panic_message(panic: &(dyn std::any::Any + Send)) -> String {
+    let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
+    text.or_else(|| panic.downcast_ref::<String>().cloned())
+        .unwrap_or_else(|| "the sampler stopped without a message".to_owned())
+}
+
+/// Lowers the priority of the calling thread.
+#[cfg(target_os = "linux")]
+fn yield_to_others() {
+    // On Linux the priority of the "process 0" is that of the calling thread. Where the system
+    // refuses, the thread works at the priority it has.
+    let _ = rustix::process::setpriority_process(None, 10);
+}
+
+#[cfg(not(target_os = "linux"))]
+fn yield_to_others() {}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+    use super::*;
+    use crate::render::synthetic::Uniform;
+    use crate::transport::PathSample;
+
+    const SIZE: UVec2 = UVec2::new(53, 37);
+
+    fn whole(film: &Film, target: u32) -> Work {
+        Work { stride: 1, target, tiles: 0..film.tile_count() }
+    }
+
+    fn rendered(threads: usize) -> Film {
+        let pool = Pool::new(Some(threads), Priority::Normal).unwrap();
+        let mut film = Film::new(SIZE).unwrap();
+        let work = whole(&film, 11);
+        let outcome = pool.sample(&mut film, &Uniform::default(), &work, &|| false);
+        assert!(outcome.complete);
+        film
+    }
+
+    #[test]
+    fn the_same_bits_for_any_number_of_threads() {
+        let one = rendered(1);
+        assert_eq!(one.totals.paths, u64::from(SIZE.x * SIZE.y) * 11);
+        assert_eq!(one.sample_range(), (11, 11));
+        assert_eq!(rendered(2), one);
+        assert_eq!(rendered(4), one);
+    }
+
+    #[test]
+    fn stopping_takes_at_most_a_sample_a_thread() {
+        let sampler = Uniform::default();
+        let stop = AtomicBool::new(false);
+        let threads = 3;
+        let after = AtomicU64::new(0);
+        struct Stopping<'a>(&'a Uniform, &'a AtomicBool, &'a AtomicU64);
+        impl PixelSampler for Stopping<'_> {
+            fn sample(&self, pixel: UVec2, sample: u32) -> PathSample {
+                if self.1.load(Ordering::SeqCst) {
+                    self.2.fetch_add(1, Ordering::SeqCst);
+                }
+                if self.0.calls.load(Ordering::SeqCst) == 500 {
+                    self.1.store(true, Ordering::SeqCst);
+                }
+                self.0.sample(pixel, sample)
+            }
+        }
+        let pool = Pool::new(Some(threads), Priority::Background).unwrap();
+        let mut film = Film::new(SIZE).unwrap();
+        let work = whole(&film, 2);
+        let stopping = Stopping(&sampler, &stop, &after);
+        let outcome = pool.sample(&mut film, &stopping, &work, &|| stop.load(Ordering::SeqCst));
+        assert!(!outcome.complete && outcome.failure.is_none());
+        assert!(after.load(Ordering::SeqCst) <= threads as u64);
+        assert_eq!(film.totals.paths, sampler.calls.load(Ordering::SeqCst));
+
+        // Doing the same work again gives what it would have given at once.
+        pool.sample(&mut film, &sampler, &work, &|| false);
+        let mut straight = Film::new(SIZE).unwrap();
+        pool.sample(&mut straight, &sampler, &work, &|| false);
+        assert_eq!(film, straight);
+    }
+
+    #[test]
+    fn a_panic_names_its_pixel_and_sample() {
+        struct Faulty;
+        impl PixelSampler for Faulty {
+            fn sample(&self, pixel: UVec2, sample: u32) -> PathSample {
+                assert!(pixel != UVec2::new(20, 30) || sample < 2, "a fault on purpose");
+                PathSample::default()
+            }
+        }
+        let pool = Pool::new(Some(2), Priority::Normal).unwrap();
+        let mut film = Film::new(SIZE).unwrap();
+        let work = whole(&film, 4);
+        let outcome = pool.sample(&mut film, &Faulty, &work, &|| false);
+        let failure = outcome.failure.unwrap();
+        assert_eq!(failure.at, Some((UVec2::new(20, 30), 2)));
+        assert!(!outcome.complete);
+        let text = failure.to_string();
+        assert!(text.contains("--pixel 20,30 --sample 2") && text.contains("on purpose"), "{text}");
+        assert_eq!(film.samples(UVec2::new(20, 30)), 2);
+    }
+}

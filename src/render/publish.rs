@@ -1,0 +1,153 @@
+//! Pictures made from a film for the window to show.
+
+use glam::UVec2;
+use rayon::prelude::*;
+
+use super::estimate::{FilmStats, LineStats, PixelEstimate, samples_per_pixel};
+use super::film::Film;
+use super::schedule::representative;
+
+/// A finished image of an unfinished render.
+#[derive(Clone, Debug)]
+pub struct Picture {
+    /// The caller's number of the request it belongs to.
+    pub generation: u64,
+    /// Width and height.
+    pub size: UVec2,
+    /// Linear RGBA before exposure, row 0 on top. A pixel without samples shows its block.
+    pub pixels: Vec<[f32; 4]>,
+    /// Whether every pixel has at least one sample of its own.
+    pub complete: bool,
+    /// Figures at the time it was made.
+    pub stats: RenderStats,
+}
+
+/// How far a render is.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RenderStats {
+    /// Mean number of samples of a pixel.
+    pub samples_per_pixel: f64,
+    /// Seconds of rendering, pauses not counted.
+    pub seconds: f64,
+    /// Tentative collisions so far.
+    pub tracking_steps: u64,
+    /// Paths traced so far.
+    pub paths: u64,
+    /// Samples that were not finite and count as zero.
+    pub non_finite: u64,
+    /// Relative standard error of the picture, see [`FilmStats::noise`]; none before two samples.
+    pub noise: Option<f64>,
+    /// Whether the limit is reached.
+    pub finished: bool,
+}
+
+/// The pixel to read in place of `pixel`: itself once it has a sample, or the one that stands for
+/// the smallest sampled block around it.
+pub fn shown_pixel(film: &Film, pixel: UVec2) -> UVec2 {
+    [1, 2, 4, 8, 16]
+        .into_iter()
+        .map(|stride| representative(pixel, stride, film.size()))
+        .find(|&candidate| film.samples(candidate) > 0)
+        .unwrap_or(pixel)
+}
+
+/// Reads the picture into `pixels`, which gets the size of the film; returns the noise (see
+/// [`FilmStats::noise`]). Runs on the threads of the calling pool.
+pub fn resolve(film: &Film, pixels: &mut Vec<[f32; 4]>) -> Option<f64> {
+    let size = film.size();
+    pixels.resize(size.x as usize * size.y as usize, [0.0; 4]);
+    let lines: Vec<LineStats> = pixels
+        .par_chunks_mut(size.x as usize)
+        .enumerate()
+        .map(|(y, line)| resolve_line(film, y as u32, line))
+        .collect();
+    FilmStats::from_lines(film, &lines).noise
+}
+
+fn resolve_line(film: &Film, y: u32, line: &mut [[f32; 4]]) -> LineStats {
+    let mut stats = LineStats::default();
+    // Neighbors that show the same block are read once.
+    let mut last = (UVec2::MAX, [0.0; 4]);
+    for (x, out) in line.iter_mut().enumerate() {
+        let pixel = UVec2::new(x as u32, y);
+        let shown = shown_pixel(film, pixel);
+        if shown != last.0 {
+            last = (shown, [0.0; 4]);
+            if let Some(estimate) = PixelEstimate::of(film, shown) {
+                let mean = estimate.mean();
+                if shown == pixel {
+                    stats.add(&estimate, mean);
+                }
+                let [r, g, b] = mean.map(|value| value as f32);
+                last.1 = [r, g, b, estimate.alpha() as f32];
+            }
+        }
+        *out = last.1;
+    }
+    stats
+}
+
+/// The figures of `film` after `seconds` of rendering.
+pub(crate) fn render_stats(
+    film: &Film,
+    seconds: f64,
+    noise: Option<f64>,
+    finished: bool,
+) -> RenderStats {
+    RenderStats {
+        samples_per_pixel: samples_per_pixel(film),
+        seconds,
+        tracking_steps: film.totals.tracking_steps,
+        paths: film.totals.paths,
+        non_finite: film.totals.non_finite,
+        noise,
+        finished,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Rgb;
+    use crate::render::synthetic::Uniform;
+    use crate::transport::{PathSample, PixelSampler};
+
+    fn red(value: f32) -> PathSample {
+        PathSample { emission: Rgb::new(value, 0.0, 0.0), alpha: 0.25, ..Default::default() }
+    }
+
+    #[test]
+    fn an_unsampled_pixel_shows_its_smallest_sampled_block() {
+        let mut film = Film::new(UVec2::new(21, 17)).unwrap();
+        let mut pixels = Vec::new();
+        film.add(UVec2::new(8, 8), &red(16.0));
+        film.add(UVec2::new(4, 4), &red(8.0));
+        film.add(UVec2::new(2, 2), &red(4.0));
+        film.add(UVec2::new(1, 0), &red(1.0));
+        film.add(UVec2::new(20, 4), &red(20.0));
+        resolve(&film, &mut pixels);
+        let red_at = |x: usize, y: usize| pixels[y * 21 + x][0];
+        assert_eq!(red_at(1, 0), 1.0);
+        assert_eq!(red_at(0, 0), 4.0);
+        assert_eq!(red_at(3, 3), 4.0);
+        assert_eq!(red_at(5, 7), 8.0);
+        assert_eq!(red_at(9, 7), 16.0);
+        assert_eq!(red_at(15, 15), 16.0);
+        assert_eq!(red_at(17, 0), 20.0);
+        assert_eq!(pixels[0], [4.0, 0.0, 0.0, 0.25]);
+        assert_eq!(pixels[16 * 21], [0.0; 4]);
+    }
+
+    #[test]
+    fn the_noise_is_that_of_the_film() {
+        let size = UVec2::new(33, 20);
+        let mut film = Film::new(size).unwrap();
+        for y in 0..size.y {
+            for x in 0..size.x {
+                let pixel = UVec2::new(x, y);
+                (0..9).for_each(|s| film.add(pixel, &Uniform::default().sample(pixel, s)));
+            }
+        }
+        assert_eq!(resolve(&film, &mut Vec::new()), FilmStats::of(&film).noise);
+    }
+}

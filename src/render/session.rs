@@ -1,0 +1,353 @@
+//! Rendering behind a window: a thread of its own that takes the latest request, refines it and
+//! hands over pictures. No call here waits for sampling.
+
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use glam::UVec2;
+
+use super::engine::{Engine, Step};
+use super::film::Film;
+use super::headless::same_size;
+use super::pool::{Failure, Pool, Priority};
+use super::publish::Picture;
+use super::schedule::Limits;
+use crate::error::{Error, Result};
+use crate::transport::PixelSampler;
+
+/// How long a request without a picture is left to get one when the next already waits. Otherwise
+/// a drag whose edits come faster than coarse pictures would show nothing until it ends.
+const PATIENCE: Duration = Duration::from_millis(250);
+
+/// Something to render.
+pub struct Request {
+    /// What to sample.
+    pub sampler: Arc<dyn PixelSampler>,
+    /// Width and height in pixels.
+    pub size: UVec2,
+    /// Samples a pixel; 0: until stopped.
+    pub spp: u32,
+    /// The caller's number, which the pictures carry.
+    pub generation: u64,
+    /// A film to go on from, of the same size.
+    pub resume: Option<Film>,
+}
+
+/// A progressive render in the background. Dropping it ends it within one sample a thread.
+pub struct Session {
+    shared: Arc<Shared>,
+    thread: Option<JoinHandle<()>>,
+}
+
+/// What callers have asked for and the render thread has not yet seen.
+#[derive(Default)]
+struct Mail {
+    request: Option<Request>,
+    snapshots: Vec<Sender<Film>>,
+    paused: bool,
+}
+
+struct Shared {
+    mail: Mutex<Mail>,
+    bell: Condvar,
+    /// Grows with every letter; work that began under an older number breaks off.
+    epoch: AtomicU64,
+    quit: AtomicBool,
+    latest: Mutex<Option<Arc<Picture>>>,
+    failure: Mutex<Option<(u64, Failure)>>,
+    on_publish: Box<dyn Fn() + Send + Sync>,
+}
+
+impl Session {
+    /// Starts a session with `threads` sampling threads, or one a core. `on_publish` is called from
+    /// the render thread after each published picture and after a failure.
+    ///
+    /// # Errors
+    /// When the system refuses to start threads.
+    pub fn new(
+        threads: Option<usize>,
+        on_publish: impl Fn() + Send + Sync + 'static,
+    ) -> Result<Self> {
+        let pool = Pool::new(threads, Priority::Background)?;
+        let shared = Arc::new(Shared {
+            mail: Mutex::default(),
+            bell: Condvar::new(),
+            epoch: AtomicU64::new(0),
+            quit: AtomicBool::new(false),
+            latest: Mutex::default(),
+            failure: Mutex::default(),
+            on_publish: Box::new(on_publish),
+        });
+        let worker = Worker {
+            shared: Arc::clone(&shared),
+            pool,
+            epoch: 0,
+            paused: false,
+            job: None,
+            seconds_per_path: None,
+            snapshots: Vec::new(),
+            spare: Vec::new(),
+        };
+        let thread = std::thread::Builder::new()
+            .name("render".to_owned())
+            .spawn(move || worker.run())
+            .map_err(|e| Error::invalid("", "threads", format!("cannot start a thread: {e}")))?;
+        Ok(Self { shared, thread: Some(thread) })
+    }
+
+    /// Renders `request` from now on. The latest wins: what runs is given up within one sample a
+    /// thread (or, if it has nothing to show yet, when it has, or after a quarter of a second), and
+    /// a request that has not begun is dropped.
+    pub fn start(&self, request: Request) {
+        self.shared.post(|mail| mail.request = Some(request));
+    }
+
+    /// Holds or resumes refinement. A request started while paused still brings its first, coarse
+    /// picture.
+    pub fn set_paused(&self, paused: bool) {
+        self.shared.post(|mail| mail.paused = paused);
+    }
+
+    /// The latest picture. After [`Self::start`] the old one stays until the new request has its
+    /// first.
+    pub fn latest(&self) -> Option<Arc<Picture>> {
+        lock(&self.shared.latest).clone()
+    }
+
+    /// Asks for a consistent copy of the film of the latest request, for saving; it comes as soon
+    /// as there is a picture, also while paused or finished. The channel closes without one when
+    /// there is nothing to copy or no memory for it.
+    pub fn snapshot(&self) -> Receiver<Film> {
+        let (sender, receiver) = channel();
+        self.shared.post(|mail| mail.snapshots.push(sender));
+        receiver
+    }
+
+    /// Why the latest request stopped before its end, with its generation; none while all is well.
+    pub fn last_failure(&self) -> Option<(u64, Failure)> {
+        lock(&self.shared.failure).clone()
+    }
+}
+
+impl Drop for Session {
+    fn drop(&mut self) {
+        self.shared.post(|_| self.shared.quit.store(true, Ordering::Relaxed));
+        if let Some(thread) = self.thread.take() {
+            // The render thread catches what samplers do; should it have panicked all the same,
+            // there is nothing left to end.
+            let _ = thread.join();
+        }
+    }
+}
+
+impl Shared {
+    fn post(&self, change: impl FnOnce(&mut Mail)) {
+        let mut mail = lock(&self.mail);
+        change(&mut mail);
+        self.epoch.fetch_add(1, Ordering::Relaxed);
+        self.bell.notify_one();
+    }
+}
+
+/// Locks; what the mutexes guard is replaced as a whole, so a panic elsewhere cannot have left it
+/// half written.
+fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The render thread.
+struct Worker {
+    shared: Arc<Shared>,
+    pool: Pool,
+    /// The epoch of the last letter read.
+    epoch: u64,
+    paused: bool,
+    job: Option<Active>,
+    seconds_per_path: Option<f64>,
+    snapshots: Vec<Sender<Film>>,
+    /// Pictures published before, to write the next one into once nobody looks at them.
+    spare: Vec<Arc<Picture>>,
+}
+
+/// The request being rendered.
+struct Active {
+    engine: Engine,
+    generation: u64,
+    begun: Instant,
+    failed: bool,
+    shown_final: bool,
+}
+
+impl Active {
+    /// Whether it should get its first picture before the next request has its turn.
+    fn is_owed_a_picture(&self) -> bool {
+        !self.failed && !self.engine.has_picture() && self.begun.elapsed() < PATIENCE
+    }
+}
+
+impl Worker {
+    fn run(mut self) {
+        let mut idle = true;
+        while self.read_mail(idle) {
+            self.serve_snapshots();
+            idle = self.work();
+        }
+    }
+
+    /// Takes the mail, waiting for some when `idle`. Returns false when the session ends.
+    fn read_mail(&mut self, idle: bool) -> bool {
+        let shared = Arc::clone(&self.shared);
+        let mut mail = lock(&shared.mail);
+        if idle {
+            let nothing_new = |_: &mut Mail| shared.epoch.load(Ordering::Relaxed) == self.epoch;
+            let waited = shared.bell.wait_while(mail, nothing_new);
+            mail = waited.unwrap_or_else(PoisonError::into_inner);
+        }
+        if shared.quit.load(Ordering::Relaxed) {
+            return false;
+        }
+        self.snapshots.append(&mut mail.snapshots);
+        self.paused = mail.paused;
+        if self.job.as_ref().is_some_and(Active::is_owed_a_picture) && mail.request.is_some() {
+            // The epoch stays the old one: the letter is still unread.
+            return true;
+        }
+        let request = mail.request.take();
+        self.epoch = shared.epoch.load(Ordering::Relaxed);
+        drop(mail);
+        if let Some(request) = request {
+            self.begin(request);
+        }
+        true
+    }
+
+    fn begin(&mut self, request: Request) {
+        *lock(&self.shared.failure) = None;
+        let mut old_film = None;
+        if let Some(job) = self.job.take() {
+            let (film, cost) = job.engine.into_parts();
+            self.seconds_per_path = cost.or(self.seconds_per_path);
+            old_film = Some(film);
+        }
+        match film_for(request.resume, request.size, old_film) {
+            Ok(film) => {
+                let limits = Limits { spp: request.spp, seconds: None };
+                let engine = Engine::new(request.sampler, film, limits, self.seconds_per_path);
+                self.job = Some(Active {
+                    engine,
+                    generation: request.generation,
+                    begun: Instant::now(),
+                    failed: false,
+                    shown_final: false,
+                });
+            }
+            Err(error) => {
+                let failure = Failure { at: None, message: error.to_string() };
+                self.fail(request.generation, failure);
+            }
+        }
+    }
+
+    fn fail(&self, generation: u64, failure: Failure) {
+        *lock(&self.shared.failure) = Some((generation, failure));
+        (self.shared.on_publish)();
+    }
+
+    fn serve_snapshots(&mut self) {
+        let Some(job) = &self.job else {
+            self.snapshots.clear();
+            return;
+        };
+        if !job.engine.has_picture() && !job.failed {
+            return;
+        }
+        for sender in self.snapshots.drain(..) {
+            if let Ok(film) = job.engine.film().try_clone() {
+                // Whoever asked may have gone.
+                let _ = sender.send(film);
+            }
+        }
+    }
+
+    /// One step of the render; returns whether there is nothing to do until the next letter.
+    fn work(&mut self) -> bool {
+        let Some(job) = &mut self.job else { return true };
+        if job.failed {
+            return true;
+        }
+        let (shared, epoch, begun) = (&self.shared, self.epoch, job.begun);
+        let has_picture = job.engine.has_picture();
+        let stop = || {
+            shared.epoch.load(Ordering::Relaxed) != epoch
+                && (has_picture
+                    || shared.quit.load(Ordering::Relaxed)
+                    || begun.elapsed() > PATIENCE)
+        };
+        let step = job.engine.step(&self.pool, self.paused, &stop);
+        let finished = job.engine.is_finished();
+        let due = job.engine.publish_due() || (finished && !job.shown_final);
+        if due && !matches!(step, Step::Interrupted) {
+            job.shown_final = finished;
+            self.publish();
+        }
+        match step {
+            Step::Worked | Step::Interrupted => false,
+            Step::Paused | Step::Done => true,
+            Step::Failed(failure) => {
+                if let Some(job) = &mut self.job {
+                    job.failed = true;
+                    let generation = job.generation;
+                    self.fail(generation, failure);
+                }
+                // Snapshots that waited for a picture get what there is.
+                self.snapshots.is_empty()
+            }
+        }
+    }
+
+    /// Makes a picture of the film and hands it over.
+    fn publish(&mut self) {
+        let mut pixels = self.spare_pixels();
+        let Some(job) = &mut self.job else { return };
+        let stats = job.engine.picture(&self.pool, &mut pixels);
+        let picture = Arc::new(Picture {
+            generation: job.generation,
+            size: job.engine.film().size(),
+            pixels,
+            complete: job.engine.is_complete(),
+            stats,
+        });
+        self.spare.push(Arc::clone(&picture));
+        *lock(&self.shared.latest) = Some(picture);
+        (self.shared.on_publish)();
+    }
+
+    /// Memory for a picture: that of an old one if nobody holds it any more.
+    fn spare_pixels(&mut self) -> Vec<[f32; 4]> {
+        let free = self.spare.iter().position(|picture| Arc::strong_count(picture) == 1);
+        let free = free.map(|index| self.spare.swap_remove(index));
+        // Two are kept: the latest and the one the window may still be reading.
+        let excess = self.spare.len().saturating_sub(2);
+        self.spare.drain(..excess);
+        free.and_then(|picture| Arc::try_unwrap(picture).ok())
+            .map_or_else(Vec::new, |picture| picture.pixels)
+    }
+}
+
+/// The film to render on: the one to resume, the old one cleared, or a new one.
+fn film_for(resume: Option<Film>, size: UVec2, old: Option<Film>) -> Result<Film> {
+    match (resume, old) {
+        (Some(film), _) => same_size(film, size),
+        (None, Some(mut film)) if film.size() == size => {
+            film.clear();
+            Ok(film)
+        }
+        (None, old) => {
+            drop(old);
+            Film::new(size)
+        }
+    }
+}

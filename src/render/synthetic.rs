@@ -1,0 +1,54 @@
+//! Samplers for tests: no light, only numbers that a test can foresee.
+
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use glam::UVec2;
+
+use crate::math::Rgb;
+use crate::transport::{PathSample, PixelSampler};
+
+/// Uniform variables on [0, 1), one for each pixel and sample, alike in all channels and spread
+/// over the four parts.
+#[derive(Default)]
+pub(crate) struct Uniform {
+    /// Samples taken so far.
+    pub calls: AtomicU64,
+    /// Rounds of extra work, to cost time.
+    pub cost: u32,
+}
+
+/// The finalizer of SplitMix64: well mixed bits of a counter.
+pub(crate) fn mix(seed: u64) -> u64 {
+    let z = seed.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
+impl PixelSampler for Uniform {
+    fn sample(&self, pixel: UVec2, sample: u32) -> PathSample {
+        self.calls.fetch_add(1, Ordering::Relaxed);
+        let key = u64::from(pixel.x) | u64::from(pixel.y) << 20 | u64::from(sample) << 40;
+        let bits = (0..self.cost).fold(mix(key), |bits, _| std::hint::black_box(mix(bits)));
+        let _ = bits;
+        let value = (mix(key) >> 40) as f32 / (1u64 << 24) as f32;
+        let part = Rgb::splat(value);
+        let zero = Rgb::ZERO;
+        let parts = match mix(!key) % 4 {
+            0 => [part, zero, zero, zero],
+            1 => [zero, part, zero, zero],
+            2 => [zero, zero, part, zero],
+            _ => [zero, zero, zero, part],
+        };
+        PathSample {
+            emission: parts[0],
+            background: parts[1],
+            direct: parts[2],
+            indirect: parts[3],
+            alpha: value,
+            depth: (value < 0.5).then_some(1.0 + value),
+            tracking_steps: 3,
+            guard_hit: false,
+        }
+    }
+}

@@ -1,0 +1,401 @@
+//! The program from end to end: what it writes, prints and returns.
+
+use std::path::{Path, PathBuf};
+
+use assert_cmd::Command;
+use flambeau::image::exr::{read_info, read_snapshot};
+use serde_json::Value;
+
+const SCENE: &str = r#"
+[camera]
+position = [0.0, -4.0, 0.5]
+target = [0.0, 0.0, 0.0]
+
+[film]
+size = [40, 30]
+seed = 3
+spp = 4
+
+[environment]
+radiance = [0.1, 0.2, 0.4]
+
+[[volume]]
+name = "ball of fire"
+shape = "sphere"
+radius = 1.0
+density = { scale = 1.5 }
+albedo = 0.6
+emission = { mode = "source", le = [2.0, 1.0, 0.2] }
+
+[[light]]
+type = "sphere"
+center = [2.0, -1.0, 2.0]
+radius = 0.3
+intensity = 20.0
+
+[[surface]]
+shape = "plane"
+point = [0.0, 0.0, -1.0]
+"#;
+
+/// A folder with the scene in it.
+struct Place(tempfile::TempDir);
+
+impl Place {
+    fn new() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("scene.toml"), SCENE).unwrap();
+        Self(folder)
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn command(&self, arguments: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_flambeau"));
+        command.current_dir(self.0.path()).args(arguments);
+        command
+    }
+
+    /// Runs it; returns the exit code, what it printed and what it complained about.
+    fn run(&self, arguments: &[&str]) -> (i32, String, String) {
+        let output = self.command(arguments).output().unwrap();
+        let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+        (output.status.code().unwrap(), text(&output.stdout), text(&output.stderr))
+    }
+
+    fn succeed(&self, arguments: &[&str]) -> String {
+        let (code, stdout, stderr) = self.run(arguments);
+        assert_eq!(code, 0, "{arguments:?}: {stderr}");
+        stdout
+    }
+}
+
+fn json(path: &Path) -> Value {
+    serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap()
+}
+
+fn npy(path: &Path) -> (Vec<u64>, Vec<f32>) {
+    let bytes = std::fs::read(path).unwrap();
+    let file = npyz::NpyFile::new(&bytes[..]).unwrap();
+    (file.shape().to_vec(), file.into_vec().unwrap())
+}
+
+#[test]
+fn render_writes_every_format_and_the_figures() {
+    let place = Place::new();
+    place.succeed(&[
+        "render",
+        "scene.toml",
+        "-o",
+        "out.exr",
+        "-o",
+        "out.png",
+        "-o",
+        "out.npy",
+        "--stats",
+        "stats.json",
+        "--threads",
+        "2",
+    ]);
+    let (shape, values) = npy(&place.path("out.npy"));
+    assert_eq!(shape, [30, 40, 3]);
+    assert_eq!(image::open(place.path("out.png")).unwrap().width(), 40);
+    let film = read_snapshot(&place.path("out.exr")).unwrap().film;
+    assert_eq!(film.sample_range(), (4, 4));
+
+    let stats = json(&place.path("stats.json"));
+    let keys: Vec<&str> = stats.as_object().unwrap().keys().map(String::as_str).collect();
+    let mut expected = vec![
+        "spp",
+        "width",
+        "height",
+        "seed",
+        "threads",
+        "wall_seconds",
+        "cpu_seconds_total",
+        "cpu_seconds_setup",
+        "cpu_seconds_render",
+        "mean_rgb",
+        "gray_variance_of_mean",
+        "mean_relative_variance",
+        "paths",
+        "tracking_steps",
+        "non_finite_samples",
+        "strategy",
+        "version",
+    ];
+    let mut found = keys.clone();
+    expected.sort_unstable();
+    found.sort_unstable();
+    assert_eq!(found, expected);
+    assert_eq!((&stats["spp"], &stats["seed"]), (&4.into(), &3.into()));
+    assert_eq!((&stats["width"], &stats["threads"]), (&40.into(), &2.into()));
+    assert_eq!(stats["paths"], 40 * 30 * 4);
+    assert_eq!(stats["non_finite_samples"], 0);
+    assert_eq!(stats["strategy"]["majorant_boost"], true);
+    for channel in 0..3 {
+        let mean = values.iter().skip(channel).step_by(3).map(|&v| f64::from(v)).sum::<f64>();
+        let mean = mean / (30.0 * 40.0);
+        assert!((stats["mean_rgb"][channel].as_f64().unwrap() - mean).abs() < 1e-6 * mean);
+        assert!(mean > 0.01);
+    }
+    for positive in ["gray_variance_of_mean", "mean_relative_variance", "wall_seconds"] {
+        assert!(stats[positive].as_f64().unwrap() > 0.0, "{positive}");
+    }
+    let seconds = |key: &str| stats[key].as_f64().unwrap();
+    let parts = seconds("cpu_seconds_setup") + seconds("cpu_seconds_render");
+    assert!((seconds("cpu_seconds_total") - parts).abs() < 1e-9);
+}
+
+#[test]
+fn the_command_line_overrides_the_scene() {
+    let place = Place::new();
+    place.succeed(&[
+        "render",
+        "scene.toml",
+        "-o",
+        "out.exr",
+        "--size",
+        "17x9",
+        "--seed",
+        "5",
+        "--spp",
+        "2",
+        "--preset",
+        "baseline",
+        "--set",
+        "strategy.majorant_boost=true",
+        "--set",
+        "volume.0.density.scale=0.5",
+        "--stats",
+        "stats.json",
+    ]);
+    let stats = json(&place.path("stats.json"));
+    assert_eq!((&stats["width"], &stats["height"]), (&17.into(), &9.into()));
+    assert_eq!((&stats["spp"], &stats["seed"]), (&2.into(), &5.into()));
+    assert_eq!(stats["strategy"]["emission_ratio_tracking"], false);
+    assert_eq!(stats["strategy"]["majorant_boost"], true);
+    let header = read_info(&place.path("out.exr")).unwrap().header.unwrap();
+    assert_eq!(header.seed, 5);
+    assert!(header.strategy.contains("emission_decoupling = false"), "{}", header.strategy);
+
+    // The scene in the header renders to the same picture.
+    std::fs::write(place.path("again.toml"), &header.scene).unwrap();
+    place.succeed(&["render", "again.toml", "-o", "again.exr"]);
+    let film = |name: &str| read_snapshot(&place.path(name)).unwrap().film;
+    assert_eq!(film("out.exr"), film("again.exr"));
+}
+
+#[test]
+fn the_number_of_threads_changes_nothing() {
+    let place = Place::new();
+    let render = |threads: &str| {
+        place.succeed(&[
+            "render",
+            "scene.toml",
+            "-o",
+            "out.exr",
+            "--spp",
+            "5",
+            "--threads",
+            threads,
+        ]);
+        read_snapshot(&place.path("out.exr")).unwrap().film
+    };
+    let one = render("1");
+    assert_eq!(render("2"), one);
+    assert_eq!(render("4"), one);
+}
+
+#[test]
+fn a_resumed_render_is_the_uninterrupted_one() {
+    let place = Place::new();
+    place.succeed(&["render", "scene.toml", "-o", "half.exr", "--spp", "5"]);
+    place.succeed(&["render", "scene.toml", "-o", "all.exr", "--spp", "13"]);
+    place.succeed(&[
+        "render",
+        "scene.toml",
+        "--resume",
+        "half.exr",
+        "-o",
+        "resumed.exr",
+        "-o",
+        "resumed.npy",
+        "--spp",
+        "13",
+        "--stats",
+        "stats.json",
+    ]);
+    let snapshot = |name: &str| read_snapshot(&place.path(name)).unwrap();
+    assert_eq!(snapshot("resumed.exr").film, snapshot("all.exr").film);
+    assert_eq!(json(&place.path("stats.json"))["paths"], 40 * 30 * 13);
+    let (half, resumed) = (snapshot("half.exr").header, snapshot("resumed.exr").header);
+    assert!(resumed.cpu_seconds_render > half.cpu_seconds_render);
+
+    let (code, _, stderr) = place.run(&[
+        "render",
+        "scene.toml",
+        "--resume",
+        "half.exr",
+        "-o",
+        "x.exr",
+        "--set",
+        "volume.0.albedo=0.7",
+    ]);
+    assert_eq!(code, 1);
+    assert!(stderr.contains("albedo = 0.6") && stderr.contains("albedo = 0.7"), "{stderr}");
+    let (code, _, stderr) = place.run(&[
+        "render",
+        "scene.toml",
+        "--resume",
+        "half.exr",
+        "-o",
+        "x.exr",
+        "--size",
+        "8x8",
+    ]);
+    assert_eq!(code, 1);
+    assert!(stderr.contains("size"), "{stderr}");
+    assert!(!place.path("x.exr").exists());
+}
+
+/// Ctrl-C in the middle: what there is is written, and going on from it misses nothing.
+#[cfg(unix)]
+#[test]
+fn an_interrupt_writes_what_there_is() {
+    use rustix::process::{Pid, Signal, kill_process};
+    use std::process::{Command, Stdio};
+    use std::time::{Duration, Instant};
+
+    let place = Place::new();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_flambeau"))
+        .current_dir(place.0.path())
+        .args(["render", "scene.toml", "-o", "cut.exr", "--spp", "1000000", "--size", "200x150"])
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    std::thread::sleep(Duration::from_millis(700));
+    kill_process(Pid::from_child(&child), Signal::INT).unwrap();
+    let start = Instant::now();
+    let status = child.wait().unwrap();
+    assert_eq!(status.code(), Some(130));
+    assert!(start.elapsed() < Duration::from_secs(20), "it went on for {:?}", start.elapsed());
+    let (_, most) = read_snapshot(&place.path("cut.exr")).unwrap().film.sample_range();
+    assert!(most > 0);
+
+    let spp = (most + 1).to_string();
+    let common = ["render", "scene.toml", "--size", "200x150", "--spp", &spp];
+    place.succeed(&[&common[..], &["-o", "resumed.exr", "--resume", "cut.exr"]].concat());
+    place.succeed(&[&common[..], &["-o", "all.exr"]].concat());
+    let film = |name: &str| read_snapshot(&place.path(name)).unwrap().film;
+    assert_eq!(film("resumed.exr"), film("all.exr"));
+}
+
+#[test]
+fn a_time_limit_ends_the_render() {
+    let place = Place::new();
+    place.succeed(&["render", "scene.toml", "-o", "out.npy", "--time", "0.3", "--stats", "s.json"]);
+    let stats = json(&place.path("s.json"));
+    assert!(stats["spp"].as_f64().unwrap() > 4.0, "the scene's spp was taken for a limit");
+    assert!((0.3..10.0).contains(&stats["wall_seconds"].as_f64().unwrap()));
+}
+
+#[test]
+fn exit_codes_tell_failure_from_wrong_usage() {
+    let place = Place::new();
+    std::fs::write(place.path("broken.toml"), "[camera]\nfov = 3").unwrap();
+    let failures: &[&[&str]] = &[
+        &["render", "absent.toml", "-o", "x.exr"],
+        &["render", "broken.toml", "-o", "x.exr"],
+        &["render", "scene.toml", "-o", "no/such/folder/x.exr"],
+        &["render", "scene.toml", "-o", "x.exr", "--resume", "scene.toml"],
+        &["info", "absent.vdb"],
+        &["info", "broken.toml"],
+    ];
+    for arguments in failures {
+        let (code, _, stderr) = place.run(arguments);
+        assert_eq!(code, 1, "{arguments:?}: {stderr}");
+        assert!(stderr.starts_with("flambeau: "), "{arguments:?}: {stderr}");
+    }
+    let usage: &[&[&str]] = &[
+        &["render", "scene.toml"],
+        &["render", "scene.toml", "-o", "x.jpg"],
+        &["render", "scene.toml", "-o", "x.exr", "--size", "12"],
+        &["render", "scene.toml", "-o", "x.exr", "--spp", "0"],
+        &["render", "scene.toml", "-o", "x.exr", "--time", "-1"],
+        &["render", "scene.toml", "-o", "x.exr", "--preset", "ful"],
+        &["render", "scene.toml", "-o", "x.exr", "--set", "film.sise=[3, 3]"],
+        &["render", "scene.toml", "-o", "x.exr", "--set", "nonsense"],
+        &["replay", "scene.toml", "--pixel", "40,0", "--sample", "0"],
+        &["replay", "scene.toml", "--pixel", "1", "--sample", "0"],
+        &["keys", "--xml"],
+        &["--nonsense"],
+    ];
+    for arguments in usage {
+        let (code, _, stderr) = place.run(arguments);
+        assert_eq!(code, 2, "{arguments:?}: {stderr}");
+        assert!(!stderr.is_empty());
+    }
+    for arguments in [&["--help"][..], &["--version"], &["render", "--help"]] {
+        place.succeed(arguments);
+    }
+    assert!(!place.path("x.exr").exists());
+}
+
+#[cfg(not(feature = "gui"))]
+#[test]
+fn without_a_window_there_is_a_hint() {
+    let (code, _, stderr) = Place::new().run(&["scene.toml"]);
+    assert_eq!(code, 2);
+    assert!(stderr.contains("flambeau render"), "{stderr}");
+}
+
+#[test]
+fn keys_are_listed_for_people_and_for_programs() {
+    let place = Place::new();
+    let text = place.succeed(&["keys"]);
+    assert!(text.contains("volume.N.density.scale") && text.contains("default"), "{text}");
+    let keys: Value = serde_json::from_str(&place.succeed(&["keys", "--json"])).unwrap();
+    let fov = keys.as_array().unwrap().iter().find(|key| key["path"] == "camera.fov_x").unwrap();
+    assert_eq!((&fov["unit"], &fov["default"]), (&"degrees".into(), &"36.0".into()));
+}
+
+#[test]
+fn info_tells_what_is_in_a_file() {
+    let place = Place::new();
+    let scene = place.succeed(&["info", "scene.toml"]);
+    for part in ["40 x 30", "ball of fire", "sphere", "emission source", "strategy"] {
+        assert!(scene.contains(part), "{part} in {scene}");
+    }
+    place.succeed(&["render", "scene.toml", "-o", "out.exr"]);
+    let snapshot = place.succeed(&["info", "out.exr"]);
+    for part in ["40 x 30", "4 per pixel", "emission.(", "state (", "[[volume]]", "seed"] {
+        assert!(snapshot.contains(part), "{part} in {snapshot}");
+    }
+    let assets = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/torch_hd.vdb");
+    let volume = place.succeed(&["info", assets]);
+    for part in ["density", "voxel size", "range", "active voxels", "bounds", "transform"] {
+        assert!(volume.contains(part), "{part} in {volume}");
+    }
+}
+
+/// The replayed path is the one that was rendered: at one sample per pixel the picture is made of
+/// single paths.
+#[test]
+fn replay_prints_the_path_that_was_rendered() {
+    let place = Place::new();
+    place.succeed(&["render", "scene.toml", "-o", "out.npy", "--spp", "1"]);
+    let (_, values) = npy(&place.path("out.npy"));
+    for (x, y) in [(20, 14), (3, 27), (33, 8)] {
+        let pixel = format!("{x},{y}");
+        let text = place.succeed(&["replay", "scene.toml", "--pixel", &pixel, "--sample", "0"]);
+        assert!(text.starts_with("ray 1 from (0, -4, 0.5)"), "{text}");
+        let beauty = text.lines().find_map(|line| line.trim().strip_prefix("beauty (")).unwrap();
+        let beauty: Vec<f32> =
+            beauty.trim_end_matches(')').split(", ").map(|v| v.parse().unwrap()).collect();
+        let at = (y * 40 + x) * 3;
+        assert_eq!(beauty, values[at..at + 3], "pixel {pixel}: {text}");
+    }
+}
