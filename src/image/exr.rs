@@ -219,7 +219,7 @@ pub struct Snapshot {
 /// Reads a snapshot to go on from.
 ///
 /// # Errors
-/// When it cannot be read, was not written by [`write`], or is damaged.
+/// When it cannot be read, was not written by [`write()`], or is damaged.
 pub fn read_snapshot(path: &Path) -> Result<Snapshot> {
     let info = read_info(path)?;
     let Some(header) = info.header else {
