@@ -1,5 +1,7 @@
 //! Flambeau: interactive, progressive preview of fire, smoke, fog and cloud.
 
+#[cfg(feature = "gui")]
+pub mod app;
 pub mod cli;
 pub mod error;
 pub mod image;

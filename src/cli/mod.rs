@@ -97,6 +97,12 @@ pub fn run() -> ExitCode {
     ExitCode::from(exit as u8)
 }
 
+#[cfg(feature = "gui")]
+fn open_window(scene: Option<String>) -> Result<Exit, Refusal> {
+    crate::app::run(scene)?;
+    Ok(Exit::Done)
+}
+
 #[cfg(not(feature = "gui"))]
 fn open_window(_: Option<String>) -> Result<Exit, Refusal> {
     eprintln!(

@@ -6,7 +6,7 @@ use super::settings::CameraSettings;
 use crate::math::Aabb;
 
 /// The share of the picture that the box may take.
-const FILL: f32 = 0.9;
+const FILL: f32 = 0.95;
 
 /// The camera that looks at the middle of `bounds` from where `view` stands, in its field of view,
 /// moved so far off that the box fills a picture of `aspect` (width / height).

@@ -1,7 +1,7 @@
 //! A bare volume in place of a scene: what its grids are, which way is up, how thick and bright it
 //! should look, and where to look from. Every guess is an ordinary setting, and is told in words.
 
-mod columns;
+mod probe;
 mod roles;
 
 use std::sync::Arc;
@@ -18,7 +18,7 @@ use super::settings::{
 use crate::error::{Error, Progress, Result};
 use crate::math::{Aabb, luminance};
 use crate::volume::{blackbody, vdb::MetaValue};
-use columns::{columns, quantile, two_digits};
+use probe::{columns, quantile, two_digits, visible_bounds};
 use roles::{Candidate, Glow};
 
 /// A scene made up for a bare volume.
@@ -30,12 +30,31 @@ pub struct Guess {
     pub notes: Vec<String>,
 }
 
-/// How thick smoke by itself should look: the optical depth of a fairly thick line of sight.
-const SMOKE_DEPTH: f32 = 6.0;
-/// The same for the soot of a fire, which must not hide it.
-const SOOT_DEPTH: f32 = 0.8;
-/// The radiance of a fairly bright line of sight through fire.
-const FIRE_RADIANCE: f32 = 1.5;
+/// How a volume should look.
+struct Look {
+    /// Words in the file's name that ask for it.
+    words: &'static [&'static str],
+    /// The optical depth of a fairly thick line of sight.
+    depth: f32,
+    /// The share of light that it scatters.
+    albedo: f32,
+    /// The radiance of a fairly bright line of sight through its fire, if nothing hid it.
+    radiance: f32,
+}
+
+/// Looks that the name of a file asks for.
+const NAMED_LOOKS: &[Look] = &[
+    Look { words: &["cloud", "cumulus", "wdas"], depth: 25.0, albedo: 0.99, radiance: 1.0 },
+    Look { words: &["fog", "mist", "haze"], depth: 1.5, albedo: 0.95, radiance: 1.0 },
+];
+/// Smoke without fire.
+const SMOKE: Look = Look { words: &[], depth: 6.0, albedo: 0.9, radiance: 1.0 };
+/// Smoke that is wrapped around a fire.
+const FIRE_SMOKE: Look = Look { words: &[], depth: 4.0, albedo: 0.5, radiance: 2.5 };
+/// The thin soot inside a fire, which must not hide it.
+const SOOT: Look = Look { words: &[], depth: 0.4, albedo: 0.3, radiance: 0.9 };
+/// A density that is nowhere above this is soot, if there is fire.
+const SOOT_BELOW: f32 = 0.3;
 /// The lines of sight that count as fairly thick and fairly bright.
 const FAIRLY: f32 = 0.8;
 /// Kelvin of the hottest place of a temperature without a unit, where its range tells nothing.
@@ -58,23 +77,27 @@ pub(super) fn guess(file: &Arc<VolumeFile>, progress: Progress) -> Result<Guess>
     // The line of sight of the default camera, in the file's own space.
     let axis = if is_y_up { 2 } else { 1 };
 
+    let name = short_name(file.name());
+    let look = look_of(name, density, glow.is_some());
     let mut volume = VolumeSettings {
-        name: short_name(file.name()).to_owned(),
+        name: name.to_owned(),
         file: Some(file.name().to_owned()),
-        albedo: Albedo::Gray(if glow.is_some() { 0.3 } else { 0.9 }),
+        albedo: Albedo::Gray(look.albedo),
         phase: PhaseSettings { g: 0.3 },
         ..VolumeSettings::default()
     };
     if is_y_up {
         volume.rotate = [90.0, 0.0, 0.0];
     }
-    volume.density = density_settings(density, glow.is_some(), &bounds, axis, &mut notes);
+    volume.density = density_settings(density, look.depth, &bounds, axis, &mut notes);
     if let Some((grid, kind)) = &glow {
-        volume.emission = emission_settings(grid, kind, &bounds, axis, &mut notes);
+        volume.emission = emission_settings(grid, kind, look.radiance, &bounds, axis, &mut notes);
     }
 
     let mut settings = Settings::default();
-    let world_bounds = bounds.transformed(&super::build::world_from_file(&volume));
+    let visible = seen.iter().filter_map(|one| visible_bounds(&one.grid, one.max));
+    let visible = visible.reduce(|a, b| a.union(&b)).unwrap_or(bounds);
+    let world_bounds = visible.transformed(&super::build::world_from_file(&volume));
     settings.camera = default_camera(&settings, &world_bounds);
     if glow.is_none() {
         daylight(&mut settings);
@@ -153,18 +176,26 @@ fn is_y_up(file: &VolumeFile, bounds: &Aabb, notes: &mut Vec<String>) -> bool {
     is_y_up
 }
 
-/// Whether the box stands on y = 0 and is centered about z = 0, rather than the other way round.
+/// Whether the box stands on y = 0 and is centered about z = 0, and does not stand on z = 0.
 fn stands_on_y(bounds: &Aabb) -> bool {
     let size = bounds.size().max_element();
-    let stands = |up: usize, side: usize| {
-        (bounds.min[up] / size).abs() + (bounds.center()[side] / size).abs()
-    };
-    stands(1, 2) + 0.05 < stands(2, 1)
+    let stands_on = |axis: usize, tolerance: f32| bounds.min[axis].abs() < tolerance * size;
+    stands_on(1, 0.08) && !stands_on(2, 0.2) && bounds.center().z.abs() < 0.1 * size
+}
+
+fn look_of(name: &str, density: Option<&Candidate>, is_fire: bool) -> &'static Look {
+    let name = name.to_ascii_lowercase();
+    let is_named = |look: &&Look| look.words.iter().any(|word| name.contains(word));
+    match density {
+        Some(density) if is_fire && density.max < SOOT_BELOW => &SOOT,
+        _ if is_fire => &FIRE_SMOKE,
+        _ => NAMED_LOOKS.iter().find(is_named).unwrap_or(&SMOKE),
+    }
 }
 
 fn density_settings(
     density: Option<&Candidate>,
-    is_fire: bool,
+    wanted_depth: f32,
     bounds: &Aabb,
     axis: usize,
     notes: &mut Vec<String>,
@@ -174,8 +205,7 @@ fn density_settings(
         return DensitySettings { grid: None, scale: Color::Gray(0.0) };
     };
     let depths = columns(&density.grid, bounds, axis, |value| value.x.max(0.0));
-    let wanted = if is_fire { SOOT_DEPTH } else { SMOKE_DEPTH };
-    let scale = quantile(&depths, FAIRLY).map_or(1.0, |depth| two_digits(wanted / depth));
+    let scale = quantile(&depths, FAIRLY).map_or(1.0, |depth| two_digits(wanted_depth / depth));
     let name = &density.grid.name;
     notes.push(format!("guessed: \"{name}\" is the density, made {scale} times as thick"));
     DensitySettings { grid: Some(name.clone()), scale: Color::Gray(scale) }
@@ -184,6 +214,7 @@ fn density_settings(
 fn emission_settings(
     candidate: &Candidate,
     kind: &Glow,
+    wanted_radiance: f32,
     bounds: &Aabb,
     axis: usize,
     notes: &mut Vec<String>,
@@ -210,7 +241,7 @@ fn emission_settings(
     }
     let brightness = brightness_of(&emission);
     let sums = columns(&candidate.grid, bounds, axis, brightness);
-    let scale = quantile(&sums, FAIRLY).map_or(1.0, |sum| two_digits(FIRE_RADIANCE / sum));
+    let scale = quantile(&sums, FAIRLY).map_or(1.0, |sum| two_digits(wanted_radiance / sum));
     match kind {
         Glow::Emission => emission.scale = Some(scale),
         _ => emission.intensity = Some(scale),

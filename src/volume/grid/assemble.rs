@@ -147,7 +147,7 @@ fn blocks_of(around: &[&Region; 8]) -> Vec<Origin> {
     for x in 0..REACH {
         for y in 0..REACH {
             for z in 0..REACH {
-                let corner = (x / edge) << 2 | (y / edge) << 1 | z / edge;
+                let corner = ((x / edge) << 2) | ((y / edge) << 1) | (z / edge);
                 blocks.push(match around[corner] {
                     Region::Constant(origin) => *origin,
                     Region::Blocks(blocks) => {

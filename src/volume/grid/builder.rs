@@ -17,6 +17,9 @@ const LEAF_EDGE: i32 = 8;
 /// A node costs a few hundred bytes while the grid is built, so this keeps tiles near 1 GiB.
 const MAX_TILE_NODES: u64 = 1 << 22;
 
+/// Leaves summed up between two looks at whether the work was cancelled.
+const LEAVES_PER_STEP: usize = 256;
+
 /// 8x8x8 voxels.
 #[derive(Clone)]
 pub struct Leaf<V> {
@@ -105,8 +108,8 @@ impl<V: Voxel> GridBuilder<V> {
     }
 
     /// Adds leaves; their origins must be multiples of 8.
-    pub fn add_leaves(&mut self, leaves: impl IntoIterator<Item = Leaf<V>>) {
-        self.leaves.extend(leaves);
+    pub fn add_leaves(&mut self, mut leaves: Vec<Leaf<V>>) {
+        self.leaves.append(&mut leaves);
     }
 
     /// Adds a box of equal voxels with its first voxel at `origin` and `edge` voxels a side.
@@ -120,7 +123,7 @@ impl<V: Voxel> GridBuilder<V> {
             return Err(Error::invalid("", "", "a tile that reaches past the largest coordinate"));
         }
         let bounds = IndexBox { min: origin, max: last.as_ivec3() };
-        if edge % LEAF_EDGE as u32 != 0 || (origin & (LEAF_EDGE - 1)) != IVec3::ZERO {
+        if !edge.is_multiple_of(LEAF_EDGE as u32) || (origin & (LEAF_EDGE - 1)) != IVec3::ZERO {
             return Err(Error::invalid("", "", "a tile that is not aligned to 8 voxels"));
         }
         let background = self.background();
@@ -151,18 +154,7 @@ impl<V: Voxel> GridBuilder<V> {
     /// # Errors
     /// [`Error::Cancelled`] when `progress` says so.
     pub fn finish(mut self, progress: Progress) -> Result<SparseGrid<V>> {
-        let background = self.background();
-        let summaries: Vec<_> = self
-            .leaves
-            .par_iter_mut()
-            .map(|leaf| {
-                let summary = Summary::of_leaf(leaf, background);
-                (summary, leaf.values.iter().all(|value| *value == leaf.values[0]))
-            })
-            .collect();
-        if !progress(0.2) {
-            return Err(Error::Cancelled);
-        }
+        let summaries = self.summarize(progress)?;
         for (number, (summary, is_constant)) in summaries.iter().enumerate() {
             self.summary.merge(summary);
             let Leaf { origin, values, .. } = &self.leaves[number];
@@ -175,6 +167,26 @@ impl<V: Voxel> GridBuilder<V> {
         }
         let Self { leaves, constants, regions, summary, .. } = self;
         assemble(Parts { constants, leaves, regions, summary }, progress)
+    }
+
+    /// Of each leaf its sums, and whether all its values are one.
+    fn summarize(&mut self, progress: Progress) -> Result<Vec<(Summary<V>, bool)>> {
+        let background = self.background();
+        let mut summaries = vec![(Summary::empty(), false); self.leaves.len()];
+        self.leaves
+            .par_chunks_mut(LEAVES_PER_STEP)
+            .zip(summaries.par_chunks_mut(LEAVES_PER_STEP))
+            .try_for_each(|(leaves, summaries)| {
+                if !progress(0.0) {
+                    return Err(Error::Cancelled);
+                }
+                for (leaf, (summary, is_constant)) in leaves.iter_mut().zip(summaries) {
+                    *summary = Summary::of_leaf(leaf, background);
+                    *is_constant = leaf.values.iter().all(|value| *value == leaf.values[0]);
+                }
+                Ok(())
+            })?;
+        Ok(summaries)
     }
 
     /// The number of a constant, the same for the same value.
@@ -245,10 +257,8 @@ impl<V: Voxel> SparseGrid<V> {
         }
         let bounds = IndexBox { min: origin, max: last.as_ivec3() };
         let leaves = IndexBox { min: bounds.min >> 3, max: bounds.max >> 3 };
-        builder.add_leaves(leaves.positions().map(|leaf| {
-            let values = DenseBox { bounds, dims, values, background };
-            values.leaf(leaf * LEAF_EDGE)
-        }));
+        let dense = DenseBox { bounds, dims, values, background };
+        builder.add_leaves(leaves.positions().map(|leaf| dense.leaf(leaf * LEAF_EDGE)).collect());
         builder.finish(NO_PROGRESS)
     }
 }

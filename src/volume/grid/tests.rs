@@ -194,12 +194,13 @@ fn tiles_beyond_memory_are_refused() {
 fn voxels_at_the_ends_of_the_range_of_coordinates() {
     let far = [i32::MIN, -2_000_000_000, 0, 2_000_000_000, i32::MAX - 7];
     let mut builder = GridBuilder::new(0.0);
-    builder.add_leaves(far.iter().enumerate().map(|(n, &at)| {
+    let leaf = |(n, &at): (usize, &i32)| {
         let mut leaf = Leaf { origin: IVec3::splat(at), values: [0.0; 512], active: [0; 8] };
         leaf.values[0] = n as f32 + 1.0;
         leaf.active[0] = 1;
         leaf
-    }));
+    };
+    builder.add_leaves(far.iter().enumerate().map(leaf).collect());
     let grid = builder.finish(NO_PROGRESS).unwrap();
     for (n, &at) in far.iter().enumerate() {
         assert_eq!(grid.value(IVec3::splat(at)), n as f32 + 1.0);

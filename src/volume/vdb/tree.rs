@@ -4,6 +4,8 @@
 //! A scan finds every node without unpacking a value; it also steps over grids that are not
 //! loaded. Then the buffers are unpacked on all threads.
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 use glam::IVec3;
 use rayon::prelude::*;
 
@@ -209,19 +211,7 @@ impl Tree<'_> {
             }
             self.add_tiles(node, background, &mut codec, &mut builder)?;
         }
-        let done = std::sync::atomic::AtomicUsize::new(0);
-        let chunks: Vec<Vec<Leaf<V>>> = self
-            .leaves
-            .par_chunks(DECODE_STEP)
-            .map_init(Codec::default, |codec, leaves| {
-                let done = done.fetch_add(leaves.len(), std::sync::atomic::Ordering::Relaxed);
-                if !progress(0.1 + 0.5 * done as f32 / self.leaves.len() as f32) {
-                    return Err(Fault::Cancelled);
-                }
-                leaves.iter().map(|leaf| self.leaf(leaf, background, codec)).collect()
-            })
-            .collect::<Result<_>>()?;
-        builder.add_leaves(chunks.into_iter().flatten());
+        builder.add_leaves(self.decode_leaves(background, progress)?);
         Ok(builder.finish(&|fraction| progress(0.6 + 0.4 * fraction))?)
     }
 
@@ -251,13 +241,28 @@ impl Tree<'_> {
         Ok(())
     }
 
-    fn leaf<V: Voxel>(&self, node: &LeafNode, background: V, codec: &mut Codec) -> Result<Leaf<V>> {
-        let mut leaf =
-            Leaf { origin: node.origin, values: [background; LEAF_VOXELS], active: [0; 8] };
-        for (word, bits) in leaf.active.iter_mut().zip(node.active.words()) {
-            *word = bits;
-        }
-        node.values.decode(&self.layout, &node.active, background, codec, &mut leaf.values)?;
-        Ok(leaf)
+    fn decode_leaves<V: Voxel>(&self, background: V, progress: Progress) -> Result<Vec<Leaf<V>>> {
+        let blank = |node: &LeafNode| Leaf {
+            origin: node.origin,
+            values: [background; LEAF_VOXELS],
+            active: node.active.words(),
+        };
+        let mut leaves: Vec<Leaf<V>> = self.leaves.iter().map(blank).collect();
+        let done = AtomicUsize::new(0);
+        let steps = leaves.len().div_ceil(DECODE_STEP) as f32;
+        leaves
+            .par_chunks_mut(DECODE_STEP)
+            .zip(self.leaves.par_chunks(DECODE_STEP))
+            .try_for_each_init(Codec::default, |codec, (leaves, nodes)| {
+                let done = done.fetch_add(1, Ordering::Relaxed) as f32;
+                if !progress(0.1 + 0.5 * done / steps) {
+                    return Err(Fault::Cancelled);
+                }
+                leaves.iter_mut().zip(nodes).try_for_each(|(leaf, node)| {
+                    let values = &mut leaf.values;
+                    node.values.decode(&self.layout, &node.active, background, codec, values)
+                })
+            })?;
+        Ok(leaves)
     }
 }

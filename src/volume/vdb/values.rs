@@ -104,12 +104,14 @@ impl<'a> Mask<'a> {
     }
 
     pub fn count(&self) -> usize {
-        self.words().map(|word| word.count_ones() as usize).sum()
+        let (words, _) = self.0.as_chunks();
+        words.iter().map(|&bytes| u64::from_le_bytes(bytes).count_ones() as usize).sum()
     }
 
-    /// The bits in words of 64; masks are whole words.
-    pub fn words(&self) -> impl Iterator<Item = u64> {
-        self.0.as_chunks().0.iter().map(|&bytes| u64::from_le_bytes(bytes))
+    /// The first 512 bits in words of 64, those that are missing off.
+    pub fn words(&self) -> [u64; 8] {
+        let (words, _) = self.0.as_chunks();
+        std::array::from_fn(|n| words.get(n).map_or(0, |&bytes| u64::from_le_bytes(bytes)))
     }
 }
 

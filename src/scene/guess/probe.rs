@@ -1,14 +1,19 @@
-//! Sums of a grid along lines through it, the measure of how thick or bright it looks.
+//! Looking at a grid from outside: how thick or bright it is along lines, and where it is at all.
 
 use glam::Vec3A;
 
 use crate::math::Aabb;
 use crate::scene::cache::{GridValues, PlacedGrid};
+use crate::scene::guess::grid_bounds;
 
 /// Lines across each of the two other axes.
 const LINES: usize = 32;
 /// Samples along each line.
 const SAMPLES: usize = 64;
+/// Samples along each edge of the lattice that finds what is seen.
+const LATTICE: usize = 48;
+/// The share of the largest value from which on something is seen.
+const VISIBLE: f32 = 0.02;
 
 /// ∫ of `measure` of the grid's value along lines through `bounds` (in the file's space) in the
 /// direction of `axis`, of every line that meets anything, in ascending order.
@@ -18,14 +23,7 @@ pub(super) fn columns(
     axis: usize,
     measure: impl Fn(Vec3A) -> f32,
 ) -> Vec<f32> {
-    let index_from_file = grid.world_from_index.inverse().as_affine3a();
-    let value = |place: Vec3A| {
-        let index = index_from_file.transform_point3a(place);
-        match &grid.values {
-            GridValues::Float(values) => Vec3A::splat(values.sample(index)),
-            GridValues::Vector(values) => values.sample(index),
-        }
-    };
+    let value = reader(grid);
     let step = bounds.size()[axis] / SAMPLES as f32;
     let fraction = |index: usize, count: usize| (index as f32 + 0.5) / count as f32;
     let line = |u: f32, v: f32| {
@@ -46,6 +44,34 @@ pub(super) fn columns(
         .collect();
     sums.sort_by(f32::total_cmp);
     sums
+}
+
+/// The box around what is seen of a grid: the samples that reach a fiftieth of its largest value.
+pub(super) fn visible_bounds(grid: &PlacedGrid, max: f32) -> Option<Aabb> {
+    let bounds = grid_bounds(grid)?;
+    let value = reader(grid);
+    let half_cell = 0.5 * bounds.size() / LATTICE as f32;
+    let mut visible = Aabb::EMPTY;
+    for index in 0..LATTICE * LATTICE * LATTICE {
+        let cell = [index % LATTICE, index / LATTICE % LATTICE, index / (LATTICE * LATTICE)];
+        let center = bounds.min + Vec3A::from_array(cell.map(|i| (2 * i + 1) as f32)) * half_cell;
+        if value(center).max_element() > VISIBLE * max {
+            visible = visible.union(&Aabb::new(center - half_cell, center + half_cell));
+        }
+    }
+    (!visible.is_empty()).then_some(visible)
+}
+
+/// The grid's value at a place in the file's space; single numbers are splat.
+fn reader(grid: &PlacedGrid) -> impl Fn(Vec3A) -> Vec3A {
+    let index_from_file = grid.world_from_index.inverse().as_affine3a();
+    move |place| {
+        let index = index_from_file.transform_point3a(place);
+        match &grid.values {
+            GridValues::Float(values) => Vec3A::splat(values.sample(index)),
+            GridValues::Vector(values) => values.sample(index),
+        }
+    }
 }
 
 /// The value below which the share `part` of the sorted sums lies; those under 1 percent of the

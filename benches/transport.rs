@@ -1,0 +1,118 @@
+//! Collisions per second on a real volume beside the bare work a collision cannot do without:
+//! drawing a step and reading voxels, from a dense array.
+
+use std::sync::Arc;
+
+use divan::{Bencher, counter::ItemsCount};
+use flambeau::{
+    error::NO_PROGRESS,
+    math::{PathRng, Ray},
+    scene::{self, Overrides, VolumeCache},
+    transport::{
+        Frame, PathSample, PixelSampler, Scene,
+        strategy::{Preset, Strategy},
+        tracking,
+    },
+};
+use glam::{UVec2, Vec3A};
+
+fn main() {
+    divan::main();
+}
+
+const SIDE: u32 = 48;
+
+fn explosion(preset: Preset) -> Scene {
+    let text = r#"
+        [camera]
+        position = [0, -14, 4]
+        target = [0, 0, 3]
+        fov_x = 36
+        [environment]
+        radiance = 0.2
+        [[volume]]
+        file = "explosion_hd.vdb"
+        density = { scale = 8.0 }
+        albedo = 0.8
+        emission = { mode = "blackbody", grid = "temperature", kelvin_scale = 900.0 }
+    "#;
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets");
+    let settings = scene::parse(text, "bench", &folder, &Overrides::default()).unwrap();
+    let scene = scene::build(&settings, &VolumeCache::default(), NO_PROGRESS).unwrap();
+    Scene { strategy: Strategy { ..preset.strategy() }, ..scene }
+}
+
+fn rays(scene: &Scene) -> Vec<Ray> {
+    let size = UVec2::splat(SIDE);
+    (0..SIDE * SIDE)
+        .map(|i| scene.camera.ray(size, UVec2::new(i % SIDE, i / SIDE), glam::Vec2::splat(0.5)))
+        .collect()
+}
+
+/// Ratio tracking along camera rays.
+#[divan::bench]
+fn tracked_collisions(bencher: Bencher) {
+    let scene = explosion(Preset::Full);
+    let rays = rays(&scene);
+    let walk = || {
+        let mut rng = PathRng::new(0, UVec2::ZERO, 0);
+        rays.iter().fold(0u64, |sum, ray| {
+            let medium = scene.world.along(*ray, f32::INFINITY);
+            sum + u64::from(tracking::transmittance(medium, &mut rng).1)
+        })
+    };
+    bencher.counter(ItemsCount::new(walk())).bench(walk);
+}
+
+/// Whole paths, counted in collisions.
+#[divan::bench(args = ["baseline", "full"])]
+fn path_collisions(bencher: Bencher, preset: &str) {
+    let scene = Arc::new(explosion(preset.parse().unwrap()));
+    let frame = Frame { scene, size: UVec2::splat(SIDE), seed: 0 };
+    let paths = || {
+        (0..SIDE * SIDE).fold(0u64, |sum, i| {
+            let sample: PathSample = frame.sample(UVec2::new(i % SIDE, i / SIDE), 0);
+            sum + u64::from(sample.tracking_steps)
+        })
+    };
+    bencher.counter(ItemsCount::new(paths())).bench(paths);
+}
+
+/// The same number of steps with nothing but an exponential, a trilinear read of a dense array of
+/// about the explosion's size and a product.
+#[divan::bench]
+fn bare_loop(bencher: Bencher) {
+    const EDGE: usize = 128;
+    let voxels: Vec<f32> = (0..EDGE * EDGE * EDGE).map(|i| (i % 97) as f32 / 97.0).collect();
+    let directions: Vec<Vec3A> =
+        rays(&explosion(Preset::Full)).iter().map(|ray| ray.direction).collect();
+    let walk = || {
+        let mut rng = PathRng::new(0, UVec2::ZERO, 0);
+        let (mut steps, mut weights) = (0u64, 0.0);
+        for direction in &directions {
+            let (mut t, mut weight) = (0.0, 1.0_f32);
+            loop {
+                t += rng.exponential() * 6.0;
+                let p = Vec3A::new(60.0, 4.0, 60.0) + t * *direction;
+                if !(p.cmpge(Vec3A::ONE) & p.cmplt(Vec3A::splat(EDGE as f32 - 2.0))).all() {
+                    break;
+                }
+                steps += 1;
+                weight *= 1.0 - trilinear(&voxels, EDGE, p);
+            }
+            weights += weight;
+        }
+        (steps, weights)
+    };
+    bencher.counter(ItemsCount::new(walk().0)).bench(walk);
+}
+
+fn trilinear(voxels: &[f32], edge: usize, p: Vec3A) -> f32 {
+    let floor = p.floor();
+    let [x, y, z] = floor.as_ivec3().to_array().map(|c| c as usize);
+    let f = p - floor;
+    let at = |i: usize, j: usize, k: usize| voxels[(x + i) + edge * ((y + j) + edge * (z + k))];
+    let lerp = |a: f32, b: f32, t: f32| a + t * (b - a);
+    let row = |j, k| lerp(at(0, j, k), at(1, j, k), f.x);
+    lerp(lerp(row(0, 0), row(1, 0), f.y), lerp(row(0, 1), row(1, 1), f.y), f.z)
+}

@@ -1,0 +1,190 @@
+//! Every command of the window: its text, its tooltip and its shortcut. Menus, buttons, keys and
+//! the help page all read this list.
+
+use egui::{Context, Key, KeyboardShortcut, Modifiers};
+
+/// Something that the user can ask for without a value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[allow(missing_docs, reason = "`text` and `tooltip` say what each is")]
+pub enum Command {
+    Open,
+    OpenPath,
+    SaveExr,
+    SavePng,
+    SaveScene,
+    Quit,
+    Undo,
+    Redo,
+    PauseResume,
+    Restart,
+    EmissionDecoupling,
+    EmissionRatioTracking,
+    MajorantBoost,
+    FrameVolume,
+    FitPicture,
+    ZoomToPixels,
+    ExposureUp,
+    ExposureDown,
+    NextToneCurve,
+    FoldPanels,
+    Shortcuts,
+}
+
+use Command as C;
+
+impl Command {
+    /// All of them, in the order of the help page.
+    pub const ALL: [Self; 21] = [
+        C::Open,
+        C::OpenPath,
+        C::SaveExr,
+        C::SavePng,
+        C::SaveScene,
+        C::Quit,
+        C::Undo,
+        C::Redo,
+        C::PauseResume,
+        C::Restart,
+        C::EmissionDecoupling,
+        C::EmissionRatioTracking,
+        C::MajorantBoost,
+        C::FrameVolume,
+        C::FitPicture,
+        C::ZoomToPixels,
+        C::ExposureUp,
+        C::ExposureDown,
+        C::NextToneCurve,
+        C::FoldPanels,
+        C::Shortcuts,
+    ];
+
+    /// What menus and buttons call it.
+    pub fn text(self) -> &'static str {
+        match self {
+            C::Open => "Open…",
+            C::OpenPath => "Open path…",
+            C::SaveExr => "Save EXR…",
+            C::SavePng => "Save PNG…",
+            C::SaveScene => "Save scene as…",
+            C::Quit => "Quit",
+            C::Undo => "Undo",
+            C::Redo => "Redo",
+            C::PauseResume => "Pause or resume",
+            C::Restart => "Restart",
+            C::EmissionDecoupling => "Emission decoupling",
+            C::EmissionRatioTracking => "Emission ratio tracking",
+            C::MajorantBoost => "Majorant boost",
+            C::FrameVolume => "Frame the volume",
+            C::FitPicture => "Fit the picture",
+            C::ZoomToPixels => "Zoom to pixels",
+            C::ExposureUp => "Exposure up",
+            C::ExposureDown => "Exposure down",
+            C::NextToneCurve => "Next tone curve",
+            C::FoldPanels => "Fold the panels",
+            C::Shortcuts => "Keys and mouse",
+        }
+    }
+
+    /// What it does.
+    pub fn tooltip(self) -> &'static str {
+        match self {
+            C::Open => {
+                "Open a scene (.toml) or a volume (.vdb). Files can also be dropped on the window."
+            }
+            C::OpenPath => "Type the path of a scene or a volume, or builtin:NAME.",
+            C::SaveExr => "Save the picture as it is, linear and with its layers, as an EXR.",
+            C::SavePng => "Save the picture as you see it, with exposure and tone curve, as a PNG.",
+            C::SaveScene => "Save every setting as a scene file that renders to the same picture.",
+            C::Quit => "Close the window.",
+            C::Undo => "Take the last edit back.",
+            C::Redo => "Make the edit that was taken back again.",
+            C::PauseResume => "Stop sampling and keep the picture, or go on where it stopped.",
+            C::Restart => "Throw the samples away and start again.",
+            C::EmissionDecoupling | C::EmissionRatioTracking | C::MajorantBoost => {
+                "Switch this strategy on or off; the picture stays the same, its noise does not."
+            }
+            C::FrameVolume => "Move the camera so that all volumes are in the picture.",
+            C::FitPicture => "Show the whole picture.",
+            C::ZoomToPixels => "Zoom in until single pixels show, and back.",
+            C::ExposureUp => "Brighten the display by half a stop.",
+            C::ExposureDown => "Darken the display by half a stop.",
+            C::NextToneCurve => "Switch between the linear and the filmic tone curve.",
+            C::FoldPanels => "Hide the panels and give the picture the room, or bring them back.",
+            C::Shortcuts => "Show every key and every move of the mouse.",
+        }
+    }
+
+    /// The key that asks for it.
+    pub fn shortcut(self) -> KeyboardShortcut {
+        let (modifiers, key) = match self {
+            C::Open => (Modifiers::COMMAND, Key::O),
+            C::OpenPath => (Modifiers::COMMAND, Key::L),
+            C::SaveExr => (Modifiers::COMMAND, Key::S),
+            C::SavePng => (Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::S),
+            C::SaveScene => (Modifiers::COMMAND.plus(Modifiers::ALT), Key::S),
+            C::Quit => (Modifiers::COMMAND, Key::Q),
+            C::Undo => (Modifiers::COMMAND, Key::Z),
+            C::Redo => (Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z),
+            C::PauseResume => (Modifiers::NONE, Key::Space),
+            C::Restart => (Modifiers::NONE, Key::R),
+            C::EmissionDecoupling => (Modifiers::NONE, Key::Num1),
+            C::EmissionRatioTracking => (Modifiers::NONE, Key::Num2),
+            C::MajorantBoost => (Modifiers::NONE, Key::Num3),
+            C::FrameVolume => (Modifiers::NONE, Key::F),
+            C::FitPicture => (Modifiers::NONE, Key::Home),
+            C::ZoomToPixels => (Modifiers::NONE, Key::Z),
+            C::ExposureUp => (Modifiers::NONE, Key::E),
+            C::ExposureDown => (Modifiers::SHIFT, Key::E),
+            C::NextToneCurve => (Modifiers::NONE, Key::T),
+            C::FoldPanels => (Modifiers::NONE, Key::N),
+            C::Shortcuts => (Modifiers::NONE, Key::F1),
+        };
+        KeyboardShortcut::new(modifiers, key)
+    }
+
+    /// The commands whose keys were pressed since the last frame. Plain keys belong to a text
+    /// field while one is edited, and to any focused control where they would press it.
+    pub fn pressed(ctx: &Context) -> Vec<Self> {
+        let typing = ctx.text_edit_focused();
+        let focused = ctx.egui_wants_keyboard_input();
+        let mut commands = Self::ALL;
+        // Keys match with superfluous modifiers too, so the most specific come first.
+        commands.sort_by_key(|command| {
+            let modifiers = command.shortcut().modifiers;
+            std::cmp::Reverse(
+                u8::from(modifiers.command) + u8::from(modifiers.shift) + u8::from(modifiers.alt),
+            )
+        });
+        ctx.input_mut(|input| {
+            commands
+                .into_iter()
+                .filter(|command| {
+                    let shortcut = command.shortcut();
+                    let taken = if shortcut.logical_key == Key::Space { focused } else { typing };
+                    let plain = !shortcut.modifiers.command;
+                    !(plain && taken) && input.consume_shortcut(&shortcut)
+                })
+                .collect()
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashSet;
+
+    #[test]
+    fn every_command_has_a_key_of_its_own() {
+        let keys: HashSet<_> = C::ALL
+            .iter()
+            .map(|command| {
+                let shortcut = command.shortcut();
+                let modifiers = shortcut.modifiers;
+                (shortcut.logical_key, modifiers.command, modifiers.shift, modifiers.alt)
+            })
+            .collect();
+        assert_eq!(keys.len(), C::ALL.len());
+        assert_eq!(C::ALL.iter().collect::<HashSet<_>>().len(), C::ALL.len());
+    }
+}

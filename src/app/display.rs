@@ -1,0 +1,242 @@
+//! The picture on the graphics card: upload when there is a new one, and the draw call that
+//! exposes, curves and codes it (`display.wgsl`).
+
+use std::num::NonZeroU64;
+use std::sync::Arc;
+
+use egui_wgpu::{CallbackResources, CallbackTrait, RenderState, ScreenDescriptor};
+use glam::{UVec2, Vec2};
+
+use super::theme::color;
+use super::zoom::Placement;
+use crate::image::tone::{Tone, ToneCurve};
+use crate::render::Picture;
+
+/// `View` of the shader.
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+struct View {
+    origin: [f32; 2],
+    step: f32,
+    exposure: f32,
+    size: [u32; 2],
+    curve: u32,
+    encode: u32,
+    surround: [f32; 4],
+}
+
+/// What the draw call needs on the graphics card; lives among egui's callback resources.
+struct Display {
+    pipeline: wgpu::RenderPipeline,
+    layout: wgpu::BindGroupLayout,
+    view: wgpu::Buffer,
+    encode: bool,
+    shown: Option<Shown>,
+}
+
+/// The uploaded picture.
+struct Shown {
+    picture: Arc<Picture>,
+    texture: wgpu::Texture,
+    bindings: wgpu::BindGroup,
+}
+
+/// Prepares the graphics card of `state` for [`paint`].
+pub fn install(state: &RenderState) {
+    let display = Display::new(&state.device, state.target_format);
+    state.renderer.write().callback_resources.insert(display);
+}
+
+/// The widest and highest picture that the graphics card can show.
+pub fn largest_size(state: &RenderState) -> u32 {
+    state.device.limits().max_texture_dimension_2d
+}
+
+/// Shows `picture` in `rect`, placed as `placement` says relative to the rect's corner. `corner` is
+/// that corner in framebuffer pixels.
+pub fn paint(
+    painter: &egui::Painter,
+    rect: egui::Rect,
+    corner: Vec2,
+    picture: Arc<Picture>,
+    placement: Placement,
+    tone: Tone,
+) {
+    let callback = PaintPicture { picture, corner: corner + placement.corner, placement, tone };
+    painter.add(egui_wgpu::Callback::new_paint_callback(rect, callback));
+}
+
+struct PaintPicture {
+    picture: Arc<Picture>,
+    /// The picture's upper left corner in the framebuffer.
+    corner: Vec2,
+    placement: Placement,
+    tone: Tone,
+}
+
+impl CallbackTrait for PaintPicture {
+    fn prepare(
+        &self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        _screen: &ScreenDescriptor,
+        _encoder: &mut wgpu::CommandEncoder,
+        resources: &mut CallbackResources,
+    ) -> Vec<wgpu::CommandBuffer> {
+        if let Some(display) = resources.get_mut::<Display>() {
+            display.upload(device, queue, &self.picture);
+            let view = self.view(display.encode);
+            queue.write_buffer(&display.view, 0, bytemuck::bytes_of(&view));
+        }
+        Vec::new()
+    }
+
+    fn paint(
+        &self,
+        _info: egui::PaintCallbackInfo,
+        pass: &mut wgpu::RenderPass<'static>,
+        resources: &CallbackResources,
+    ) {
+        let Some(display) = resources.get::<Display>() else { return };
+        let Some(shown) = &display.shown else { return };
+        pass.set_pipeline(&display.pipeline);
+        pass.set_bind_group(0, &shown.bindings, &[]);
+        pass.draw(0..3, 0..1);
+    }
+}
+
+impl PaintPicture {
+    fn view(&self, encode: bool) -> View {
+        let surround = egui::Rgba::from(color::SURROUND);
+        View {
+            origin: (-self.corner / self.placement.scale).into(),
+            step: 1.0 / self.placement.scale,
+            exposure: self.tone.exposure.exp2(),
+            size: self.picture.size.into(),
+            curve: match self.tone.curve {
+                ToneCurve::Linear => 0,
+                ToneCurve::Filmic => 1,
+            },
+            encode: u32::from(encode),
+            surround: surround.to_array(),
+        }
+    }
+}
+
+impl Display {
+    fn new(device: &wgpu::Device, target: wgpu::TextureFormat) -> Self {
+        let shader = device.create_shader_module(wgpu::include_wgsl!("display.wgsl"));
+        let layout = bind_group_layout(device);
+        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some("display"),
+            bind_group_layouts: &[Some(&layout)],
+            immediate_size: 0,
+        });
+        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some("display"),
+            layout: Some(&pipeline_layout),
+            vertex: wgpu::VertexState {
+                module: &shader,
+                entry_point: Some("vertex"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                buffers: &[],
+            },
+            primitive: wgpu::PrimitiveState::default(),
+            depth_stencil: None,
+            multisample: wgpu::MultisampleState::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &shader,
+                entry_point: Some("fragment"),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                targets: &[Some(target.into())],
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        let view = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("display view"),
+            size: size_of::<View>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        Self { pipeline, layout, view, encode: !target.is_srgb(), shown: None }
+    }
+
+    /// Brings `picture` onto the graphics card unless it is there already.
+    fn upload(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, picture: &Arc<Picture>) {
+        if self.shown.as_ref().is_some_and(|shown| Arc::ptr_eq(&shown.picture, picture)) {
+            return;
+        }
+        let reusable = self.shown.take().filter(|shown| shown.picture.size == picture.size);
+        let (texture, bindings) = match reusable {
+            Some(shown) => (shown.texture, shown.bindings),
+            None => self.allocate(device, picture.size),
+        };
+        let UVec2 { x: width, y: height } = picture.size;
+        queue.write_texture(
+            texture.as_image_copy(),
+            bytemuck::cast_slice(&picture.pixels),
+            wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(size_of::<[f32; 4]>() as u32 * width),
+                rows_per_image: Some(height),
+            },
+            wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        );
+        self.shown = Some(Shown { picture: picture.clone(), texture, bindings });
+    }
+
+    fn allocate(&self, device: &wgpu::Device, size: UVec2) -> (wgpu::Texture, wgpu::BindGroup) {
+        let texture = device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("picture"),
+            size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: wgpu::TextureFormat::Rgba32Float,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        });
+        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let bindings = device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some("display"),
+            layout: &self.layout,
+            entries: &[
+                wgpu::BindGroupEntry { binding: 0, resource: self.view.as_entire_binding() },
+                wgpu::BindGroupEntry {
+                    binding: 1,
+                    resource: wgpu::BindingResource::TextureView(&view),
+                },
+            ],
+        });
+        (texture, bindings)
+    }
+}
+
+fn bind_group_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("display"),
+        entries: &[
+            wgpu::BindGroupLayoutEntry {
+                binding: 0,
+                visibility: wgpu::ShaderStages::FRAGMENT,
+                ty: wgpu::BindingType::Buffer {
+                    ty: wgpu::BufferBindingType::Uniform,
+                    has_dynamic_offset: false,
+                    min_binding_size: NonZeroU64::new(size_of::<View>() as u64),
+                },
+                count: None,
+            },
+            wgpu::BindGroupLayoutEntry {
+                binding: 1,
+                visibility: wgpu::ShaderStages::FRAGMENT,
+                ty: wgpu::BindingType::Texture {
+                    sample_type: wgpu::TextureSampleType::Float { filterable: false },
+                    view_dimension: wgpu::TextureViewDimension::D2,
+                    multisampled: false,
+                },
+                count: None,
+            },
+        ],
+    })
+}

@@ -1,0 +1,258 @@
+//! A thread that reads and builds scenes, so that nothing blocks the window. The latest request
+//! wins: a new one cancels the one at work, and only its outcome is reported.
+
+use std::collections::HashMap;
+use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, mpsc};
+
+use crate::error::{Error, Progress, Result};
+use crate::scene::{self, GridDescription, Overrides, Settings, VolumeCache};
+use crate::transport::Scene;
+
+/// The grids of volume files by the file's name.
+pub type Grids = HashMap<String, Vec<GridDescription>>;
+
+/// What the loader is asked to do.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Job {
+    /// Read a scene or a volume (a path or `builtin:NAME`) and build it.
+    Open(String),
+    /// Build these settings.
+    Build(Settings),
+}
+
+/// What the loader has to say.
+pub enum Report {
+    /// A job has ended.
+    Ended(Outcome),
+    /// The grids of all files seen so far.
+    Grids(Arc<Grids>),
+}
+
+/// What came of a job.
+pub struct Outcome {
+    /// The job.
+    pub job: Job,
+    /// The settings and the scene built from them.
+    pub result: Result<Built>,
+}
+
+/// A built scene and the settings that it was built from.
+#[derive(Clone)]
+pub struct Built {
+    /// What it was built from.
+    pub settings: Settings,
+    /// What was guessed for a bare volume, one a line.
+    pub notes: Vec<String>,
+    /// Ready to sample.
+    pub scene: Arc<Scene>,
+}
+
+/// The handle of the thread. Dropping it cancels and ends the thread.
+pub struct Loader {
+    shared: Arc<Shared>,
+    reports: mpsc::Receiver<Report>,
+    thread: Option<std::thread::JoinHandle<()>>,
+}
+
+struct Shared {
+    desk: Mutex<Desk>,
+    wake: Condvar,
+    /// Counts the requests; work for an older one is cancelled.
+    latest: AtomicU64,
+    /// Percents done of the present job.
+    percent: AtomicU32,
+}
+
+#[derive(Default)]
+struct Desk {
+    next: Option<(u64, Job)>,
+    busy: bool,
+    closed: bool,
+}
+
+impl Loader {
+    /// Starts the thread. `on_news` is called after each outcome and as work proceeds.
+    pub fn new(on_news: impl Fn() + Send + Sync + 'static) -> Result<Self> {
+        let shared = Arc::new(Shared {
+            desk: Mutex::default(),
+            wake: Condvar::new(),
+            latest: AtomicU64::new(0),
+            percent: AtomicU32::new(0),
+        });
+        let (sender, reports) = mpsc::channel();
+        let worker = shared.clone();
+        let thread = std::thread::Builder::new()
+            .name("loader".to_owned())
+            .spawn(move || work(&worker, &sender, &on_news))
+            .map_err(|error| Error::io("the loader thread", error))?;
+        Ok(Self { shared, reports, thread: Some(thread) })
+    }
+
+    /// Asks for `job`, cancelling any other.
+    pub fn request(&self, job: Job) {
+        let ticket = self.shared.latest.fetch_add(1, Ordering::Relaxed) + 1;
+        self.shared.desk().next = Some((ticket, job));
+        self.shared.wake.notify_all();
+    }
+
+    /// Cancels what is at work or waiting.
+    pub fn cancel(&self) {
+        self.shared.latest.fetch_add(1, Ordering::Relaxed);
+        self.shared.desk().next = None;
+    }
+
+    /// The next report, if there is one.
+    pub fn poll(&self) -> Option<Report> {
+        self.reports.try_recv().ok()
+    }
+
+    /// The fraction done of the job at work, in 0..=1; `None` while idle.
+    pub fn progress(&self) -> Option<f32> {
+        let desk = self.shared.desk();
+        let busy = desk.busy || desk.next.is_some();
+        busy.then(|| self.shared.percent.load(Ordering::Relaxed) as f32 / 100.0)
+    }
+}
+
+impl Drop for Loader {
+    fn drop(&mut self) {
+        self.cancel();
+        self.shared.desk().closed = true;
+        self.shared.wake.notify_all();
+        if let Some(thread) = self.thread.take() {
+            // A panic over there was reported there already.
+            let _ = thread.join();
+        }
+    }
+}
+
+impl Shared {
+    /// The desk, also after a panic of the other side: it is sound after every statement.
+    fn desk(&self) -> MutexGuard<'_, Desk> {
+        self.desk.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Waits for the next job; `None` when the loader is dropped.
+    fn next(&self) -> Option<(u64, Job)> {
+        let mut desk = self.desk();
+        desk.busy = false;
+        loop {
+            if desk.closed {
+                return None;
+            }
+            if let Some(next) = desk.next.take() {
+                desk.busy = true;
+                self.percent.store(0, Ordering::Relaxed);
+                return Some(next);
+            }
+            desk = self.wake.wait(desk).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+}
+
+fn work(shared: &Shared, reports: &mpsc::Sender<Report>, on_news: &(dyn Fn() + Sync)) {
+    let cache = VolumeCache::default();
+    let mut grids = Grids::new();
+    while let Some((ticket, job)) = shared.next() {
+        let is_latest = || shared.latest.load(Ordering::Relaxed) == ticket;
+        let progress = |fraction: f32| {
+            let percent = (100.0 * fraction) as u32;
+            if shared.percent.swap(percent, Ordering::Relaxed) != percent {
+                on_news();
+            }
+            is_latest()
+        };
+        let result = run(&job, &cache, &progress);
+        if !is_latest() {
+            on_news();
+            continue;
+        }
+        shared.desk().busy = false;
+        let settings = result.as_ref().ok().map(|built| built.settings.clone());
+        // The receiver lives as long as this thread: the loader joins it.
+        let _ = reports.send(Report::Ended(Outcome { job, result }));
+        on_news();
+        let Some(settings) = settings else { continue };
+        let still_latest = |_: f32| is_latest();
+        // What fails here is told when the grid is asked for.
+        if let Ok(true) = add_missing(&mut grids, &settings, &cache, &still_latest) {
+            let _ = reports.send(Report::Grids(Arc::new(grids.clone())));
+            on_news();
+        }
+    }
+}
+
+fn run(job: &Job, cache: &VolumeCache, progress: Progress<'_>) -> Result<Built> {
+    let (settings, notes) = match job {
+        Job::Open(source) => {
+            let opened = scene::open(source, &Overrides::default(), cache, progress)?;
+            (opened.settings, opened.notes)
+        }
+        Job::Build(settings) => (settings.clone(), Vec::new()),
+    };
+    let scene = Arc::new(scene::build(&settings, cache, progress)?);
+    Ok(Built { settings, notes, scene })
+}
+
+/// Adds the grids of the files of `settings` that `grids` does not have yet, and reads those that
+/// the scene itself does not need. Whether there were any.
+fn add_missing(
+    grids: &mut Grids,
+    settings: &Settings,
+    cache: &VolumeCache,
+    progress: Progress<'_>,
+) -> Result<bool> {
+    let mut added = false;
+    for name in settings.volume.iter().filter_map(|volume| volume.file.as_ref()) {
+        if !grids.contains_key(name) {
+            grids.insert(name.clone(), scene::describe(name, cache, progress)?.grids);
+            added = true;
+        }
+    }
+    Ok(added)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::{Duration, Instant};
+
+    fn wait(loader: &Loader) -> Outcome {
+        let start = Instant::now();
+        loop {
+            if let Some(Report::Ended(outcome)) = loader.poll() {
+                return outcome;
+            }
+            assert!(start.elapsed() < Duration::from_secs(60), "no outcome");
+            std::thread::sleep(Duration::from_millis(1));
+        }
+    }
+
+    #[test]
+    fn the_latest_request_wins() {
+        let loader = Loader::new(|| ()).unwrap();
+        for seed in 0..50 {
+            let mut settings = Settings::default();
+            settings.film.seed = seed;
+            loader.request(Job::Build(settings));
+        }
+        loop {
+            let outcome = wait(&loader);
+            if outcome.result.unwrap().settings.film.seed == 49 {
+                break;
+            }
+        }
+        assert!(loader.poll().is_none());
+    }
+
+    #[test]
+    fn failures_name_what_was_asked_for() {
+        let loader = Loader::new(|| ()).unwrap();
+        loader.request(Job::Open("no/such/file.vdb".to_owned()));
+        let outcome = wait(&loader);
+        assert_eq!(outcome.job, Job::Open("no/such/file.vdb".to_owned()));
+        assert!(outcome.result.is_err());
+        assert_eq!(loader.progress(), None);
+    }
+}

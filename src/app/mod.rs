@@ -1,0 +1,94 @@
+//! The window: panels around a picture that refines itself.
+//!
+//! - [`window`](self): [`App`] owns the state and runs a frame; [`run`] opens a window for it.
+//! - `state`, `history`: what is edited, and undo; `commands`: everything that can be asked for.
+//! - `engine`, `loader`: from edits to pictures, without ever blocking the window.
+//! - `viewport`, `navigation`, `zoom`, `display`: the picture and the hand on it.
+//! - `panels`, `widgets`, `notices`, `theme`: what is around it.
+//! - `files`, `saver`: choosing and writing files.
+//! - `frame_stats`: what the window costs (`FLAMBEAU_FRAME_STATS=FILE`).
+
+mod commands;
+mod display;
+mod effect;
+mod engine;
+mod files;
+mod frame_stats;
+mod history;
+mod loader;
+mod navigation;
+mod notices;
+mod panels;
+mod saver;
+mod state;
+mod theme;
+mod up_axis;
+mod viewport;
+mod widgets;
+mod window;
+mod zoom;
+
+pub use commands::Command;
+pub use engine::Engine;
+pub use files::Dialogs;
+pub use notices::{Level, Notice, Notices};
+pub use state::{Document, Editor};
+pub use window::{App, Options};
+
+use crate::error::{Error, Result};
+
+/// The window as eframe runs it.
+struct Window {
+    app: App,
+}
+
+impl eframe::App for Window {
+    fn ui(&mut self, ui: &mut egui::Ui, _frame: &mut eframe::Frame) {
+        self.app.frame(ui);
+    }
+
+    fn on_exit(&mut self) {
+        self.app.close();
+    }
+
+    fn persist_egui_memory(&self) -> bool {
+        false
+    }
+}
+
+/// Opens the window on a scene or volume (a path or `builtin:NAME`), or on the default scene, and
+/// returns when it is closed.
+///
+/// # Errors
+/// When there is no display or no graphics adapter, with a hint at what to do.
+pub fn run(source: Option<String>) -> Result<()> {
+    let viewport = egui::ViewportBuilder::default()
+        .with_title("Flambeau")
+        .with_app_id("flambeau")
+        .with_inner_size([1280.0, 800.0])
+        .with_min_inner_size([720.0, 420.0])
+        .with_drag_and_drop(true);
+    let options = eframe::NativeOptions {
+        viewport,
+        renderer: eframe::Renderer::Wgpu,
+        ..eframe::NativeOptions::default()
+    };
+    let create: eframe::AppCreator<'_> = Box::new(|creation| {
+        let state = creation.wgpu_render_state.as_ref().ok_or("there is no graphics adapter")?;
+        let options = Options { source, ..Options::default() };
+        Ok(Box::new(Window { app: App::new(&creation.egui_ctx, state, options)? }))
+    });
+    eframe::run_native("flambeau", options, create).map_err(|error| no_window(&error))
+}
+
+fn no_window(error: &eframe::Error) -> Error {
+    Error::unsupported(
+        "the window",
+        "",
+        format!(
+            "{error}. It needs a display and a Vulkan, Metal, DirectX 12 or OpenGL driver (on \
+             Linux without a graphics card: Mesa's lavapipe). Without a window, \
+             `flambeau render SCENE -o OUT.exr` renders to a file."
+        ),
+    )
+}

@@ -1,0 +1,125 @@
+//! Messages that stay until dismissed, below the picture and never over it.
+
+use egui::{Frame, Margin, RichText, Stroke, Ui};
+
+use super::theme::{color, space};
+
+/// How grave a notice is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Level {
+    /// Something went well and is worth saying, such as a saved file. Leaves with the next one.
+    Done,
+    /// Something failed; what was there before is still there.
+    Failed,
+}
+
+/// One message.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Notice {
+    /// How grave it is.
+    pub level: Level,
+    /// What happened, to what, and how to mend it.
+    pub text: String,
+}
+
+/// The messages shown at present, the newest last.
+#[derive(Debug, Default)]
+pub struct Notices {
+    list: Vec<Notice>,
+}
+
+/// More than this many would crowd the picture out.
+const MOST: usize = 3;
+
+impl Notices {
+    /// Says that something went well.
+    pub fn done(&mut self, text: impl Into<String>) {
+        self.push(Notice { level: Level::Done, text: text.into() });
+    }
+
+    /// Says that something failed.
+    pub fn failed(&mut self, text: impl Into<String>) {
+        self.push(Notice { level: Level::Failed, text: text.into() });
+    }
+
+    fn push(&mut self, notice: Notice) {
+        self.list.retain(|old| old.level == Level::Failed && *old != notice);
+        self.list.push(notice);
+        if self.list.len() > MOST {
+            self.list.remove(0);
+        }
+    }
+
+    /// Forgets every message of this level.
+    pub fn clear(&mut self, level: Level) {
+        self.list.retain(|notice| notice.level != level);
+    }
+
+    /// The messages, the newest last.
+    pub fn list(&self) -> &[Notice] {
+        &self.list
+    }
+
+    /// Shows them as a stack of bars, each with a button that dismisses it.
+    pub fn show(&mut self, ui: &mut Ui) {
+        let mut dismissed = None;
+        for (index, notice) in self.list.iter().enumerate() {
+            if bar(ui, notice) {
+                dismissed = Some(index);
+            }
+        }
+        if let Some(index) = dismissed {
+            self.list.remove(index);
+        }
+    }
+}
+
+/// Shows one notice; whether it was dismissed.
+fn bar(ui: &mut Ui, notice: &Notice) -> bool {
+    let (accent, heading) = match notice.level {
+        Level::Done => (color::ACCENT, "Done"),
+        Level::Failed => (color::ERROR, "Failed"),
+    };
+    let frame = Frame::new()
+        .fill(color::FLOATING)
+        .stroke(Stroke::new(1.0, color::LINE))
+        .corner_radius(space::RADIUS)
+        .inner_margin(Margin::symmetric(10, 6));
+    let output = frame.show(ui, |ui| {
+        ui.horizontal_top(|ui| {
+            ui.label(RichText::new(heading).color(accent).strong());
+            let close = 70.0;
+            let width = (ui.available_width() - close).max(80.0);
+            ui.allocate_ui(egui::vec2(width, 0.0), |ui| {
+                ui.set_width(width);
+                let text = RichText::new(&notice.text).color(color::TEXT_STRONG);
+                ui.add(egui::Label::new(text).wrap().selectable(true));
+            });
+            ui.with_layout(egui::Layout::right_to_left(egui::Align::TOP), |ui| {
+                ui.button("Dismiss").on_hover_text("Close this message.").clicked()
+            })
+            .inner
+        })
+        .inner
+    });
+    output.inner
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn failures_stay_and_successes_leave() {
+        let mut notices = Notices::default();
+        notices.failed("a");
+        notices.done("b");
+        notices.failed("c");
+        let texts: Vec<_> = notices.list().iter().map(|n| n.text.as_str()).collect();
+        assert_eq!(texts, ["a", "c"]);
+        for n in 0..9 {
+            notices.failed(n.to_string());
+        }
+        assert_eq!(notices.list().len(), MOST);
+    }
+}

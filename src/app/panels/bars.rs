@@ -1,0 +1,78 @@
+//! Bars that come and go at the edges of the picture: work in progress, and a path to type.
+
+use egui::{Button, Key, ProgressBar, RichText, TextEdit, Ui};
+
+use crate::app::files::Purpose;
+use crate::app::theme::{color, space};
+
+/// Shows how far a load is; whether it should be cancelled.
+pub fn progress(ui: &mut Ui, what: &str, fraction: f32) -> bool {
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(what).color(color::TEXT_STRONG));
+        let bar = ProgressBar::new(fraction)
+            .desired_width((ui.available_width() - 90.0).max(60.0))
+            .desired_height(8.0)
+            .fill(color::ACCENT);
+        ui.add(bar);
+        ui.button("Cancel").on_hover_text("Stop loading and keep what is shown.").clicked()
+    })
+    .inner
+}
+
+/// A path being typed.
+#[derive(Debug)]
+pub struct PathBar {
+    /// What for.
+    pub purpose: Purpose,
+    /// What is typed so far.
+    pub text: String,
+    fresh: bool,
+}
+
+/// What became of a path being typed.
+pub enum Typed {
+    /// It is still being typed.
+    Pending,
+    /// It is complete.
+    Done(String),
+    /// It is not wanted any more.
+    Cancelled,
+}
+
+impl PathBar {
+    /// A bar that starts with `text`.
+    pub fn new(purpose: Purpose, text: String) -> Self {
+        Self { purpose, text, fresh: true }
+    }
+
+    /// Shows the bar.
+    pub fn show(&mut self, ui: &mut Ui) -> Typed {
+        let (label, hint, confirm) = match self.purpose {
+            Purpose::Open => ("Open", "path of a .toml or .vdb, or builtin:NAME", "Open"),
+            Purpose::SaveExr => ("Save EXR as", "path of the .exr", "Save"),
+            Purpose::SavePng => ("Save PNG as", "path of the .png", "Save"),
+            Purpose::SaveScene => ("Save scene as", "path of the .toml", "Save"),
+        };
+        ui.horizontal(|ui| {
+            ui.label(RichText::new(label).color(color::TEXT_STRONG));
+            let width = (ui.available_width() - 150.0).max(80.0);
+            let edit = TextEdit::singleline(&mut self.text).hint_text(hint).desired_width(width);
+            let field = ui.add(edit).accessible_name("Path");
+            if std::mem::take(&mut self.fresh) {
+                field.request_focus();
+            }
+            let entered = field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+            let wide = |text| Button::new(text).min_size(egui::vec2(60.0, space::ROW_HEIGHT));
+            let confirmed = ui.add(wide(confirm)).clicked() || entered;
+            let escaped = ui.input(|input| input.key_pressed(Key::Escape));
+            if ui.add(wide("Cancel")).clicked() || escaped {
+                Typed::Cancelled
+            } else if confirmed && !self.text.trim().is_empty() {
+                Typed::Done(self.text.clone())
+            } else {
+                Typed::Pending
+            }
+        })
+        .inner
+    }
+}

@@ -1,0 +1,71 @@
+//! The menu bar: every command that has no better place, and the name of the scene.
+
+use egui::{Button, MenuBar, RichText, Ui};
+
+use super::Panel;
+use crate::app::commands::Command;
+use crate::app::theme::color;
+
+const FILE: [&[Command]; 3] = [
+    &[Command::Open, Command::OpenPath],
+    &[Command::SaveExr, Command::SavePng, Command::SaveScene],
+    &[Command::Quit],
+];
+const RENDER: [&[Command]; 1] = [&[Command::PauseResume, Command::Restart]];
+const VIEW: [&[Command]; 3] = [
+    &[Command::FrameVolume, Command::FitPicture, Command::ZoomToPixels],
+    &[Command::ExposureUp, Command::ExposureDown, Command::NextToneCurve],
+    &[Command::FoldPanels],
+];
+const HELP: [&[Command]; 1] = [&[Command::Shortcuts]];
+
+/// Shows the bar. `title` names what is open.
+pub fn show(ui: &mut Ui, panel: &mut Panel<'_>, title: &str) {
+    MenuBar::new().ui(ui, |ui| {
+        menu(ui, panel, "File", &FILE);
+        edit_menu(ui, panel);
+        menu(ui, panel, "Render", &RENDER);
+        menu(ui, panel, "View", &VIEW);
+        menu(ui, panel, "Help", &HELP);
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            ui.add_space(4.0);
+            let title = RichText::new(title).color(color::TEXT_DIM);
+            ui.add(egui::Label::new(title).truncate());
+        });
+    });
+}
+
+fn menu(ui: &mut Ui, panel: &mut Panel<'_>, title: &str, groups: &[&[Command]]) {
+    ui.menu_button(title, |ui| {
+        for (index, group) in groups.iter().enumerate() {
+            if index > 0 {
+                ui.separator();
+            }
+            for command in *group {
+                item(ui, panel, *command, command.text(), true);
+            }
+        }
+    });
+}
+
+fn edit_menu(ui: &mut Ui, panel: &mut Panel<'_>) {
+    let undo = panel.editor.undo_name().map(|name| format!("Undo {}", name.to_lowercase()));
+    let redo = panel.editor.redo_name().map(|name| format!("Redo {}", name.to_lowercase()));
+    ui.menu_button("Edit", |ui| {
+        let names = [(Command::Undo, undo), (Command::Redo, redo)];
+        for (command, name) in names {
+            let enabled = name.is_some();
+            let text = name.unwrap_or_else(|| command.text().to_owned());
+            item(ui, panel, command, &text, enabled);
+        }
+    });
+}
+
+fn item(ui: &mut Ui, panel: &mut Panel<'_>, command: Command, text: &str, enabled: bool) {
+    let key = RichText::new(ui.ctx().format_shortcut(&command.shortcut())).color(color::TEXT_DIM);
+    let button = Button::new(text).shortcut_text(key).min_size(egui::vec2(190.0, 0.0));
+    if ui.add_enabled(enabled, button).on_hover_text(command.tooltip()).clicked() {
+        panel.commands.push(command);
+        ui.close();
+    }
+}

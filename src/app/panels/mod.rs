@@ -1,0 +1,42 @@
+//! The panels, one file each.
+
+pub mod bars;
+pub mod camera;
+pub mod film;
+pub mod help;
+pub mod menu;
+pub mod status;
+pub mod strategy;
+pub mod volume;
+
+use egui::{CollapsingHeader, RichText, Ui};
+
+use super::commands::Command;
+use super::loader::Grids;
+use super::state::Editor;
+use super::theme::color;
+
+/// What a panel may read and change.
+pub struct Panel<'a> {
+    /// The document and its record of edits.
+    pub editor: &'a mut Editor,
+    /// The grids of all files seen so far.
+    pub grids: &'a Grids,
+    /// What was guessed when a bare volume was opened, one a line.
+    pub notes: &'a [String],
+    /// Commands that buttons ask for.
+    pub commands: &'a mut Vec<Command>,
+}
+
+/// A part of the panel column under a heading that folds it.
+pub fn section(ui: &mut Ui, title: &str, contents: impl FnOnce(&mut Ui)) {
+    let title = RichText::new(title).heading().color(color::TEXT_STRONG);
+    CollapsingHeader::new(title).default_open(true).show_unindented(ui, contents);
+    ui.add_space(super::theme::space::TIGHT);
+    ui.separator();
+}
+
+/// Small dim text that explains.
+pub fn explain(ui: &mut Ui, text: &str) {
+    ui.add(egui::Label::new(RichText::new(text).small().color(color::TEXT_DIM)).wrap());
+}

@@ -1,0 +1,170 @@
+//! The status line: how far the picture is, what it costs, how it is shown, what is under the
+//! pointer.
+
+use egui::{Align, Button, DragValue, Layout, RichText, Ui};
+
+use super::Panel;
+use crate::app::commands::Command;
+use crate::app::engine::Engine;
+use crate::app::theme::{color, space};
+use crate::app::viewport::Viewport;
+use crate::app::widgets::count;
+use crate::image::tone::ToneCurve;
+use crate::render::RenderStats;
+
+/// Shows the line.
+pub fn show(ui: &mut Ui, panel: &mut Panel<'_>, engine: &Engine, viewport: &Viewport) {
+    ui.horizontal_centered(|ui| {
+        let (text, help) = if engine.paused() {
+            ("Resume", "Go on sampling.")
+        } else {
+            ("Pause", "Stop sampling and keep the picture.")
+        };
+        let key = ui.ctx().format_shortcut(&Command::PauseResume.shortcut());
+        let button = Button::new(text).min_size(egui::vec2(64.0, 0.0));
+        if ui.add(button).on_hover_text(format!("{help}  [{key}]")).clicked() {
+            panel.commands.push(Command::PauseResume);
+        }
+        match engine.picture() {
+            Some(picture) => progress(ui, &picture.stats, engine),
+            None => {
+                ui.weak("Waiting for the first picture …");
+            }
+        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            display(ui, panel);
+            if let Some(picture) = engine.picture() {
+                ui.separator();
+                zoom(ui, viewport.scale(picture.size));
+            }
+            probe(ui, viewport);
+        });
+    });
+}
+
+fn progress(ui: &mut Ui, stats: &RenderStats, engine: &Engine) {
+    let spp = stats.samples_per_pixel;
+    let spp = if spp < 10.0 { format!("{spp:.1}") } else { format!("{spp:.0}") };
+    figure(ui, &spp, "spp", "Samples per pixel so far.", 38.0);
+    figure(ui, &seconds(stats.seconds), "", "Time spent on this picture.", 50.0);
+    let noise = match stats.noise {
+        Some(noise) => percent(noise),
+        None => "–".to_owned(),
+    };
+    let help = "Noise: the standard error of the picture relative to its brightness. It halves \
+                when the samples quadruple.";
+    figure(ui, &noise, "% noise", help, 42.0);
+    let rate = if stats.seconds > 0.0 { stats.tracking_steps as f64 / stats.seconds } else { 0.0 };
+    let help = "Tentative collisions a second: steps through the volume, real and null.";
+    figure(ui, &count(rate), "collisions/s", help, 50.0);
+    if stats.non_finite > 0 {
+        let text = format!("{} samples dropped", stats.non_finite);
+        ui.label(RichText::new(text).color(color::WARNING)).on_hover_text(
+            "Samples that were not finite numbers; they are left out of the picture.",
+        );
+    }
+    let state = match (engine.paused(), stats.finished) {
+        (true, _) => "paused",
+        (false, true) => "finished",
+        (false, false) => return,
+    };
+    ui.label(RichText::new(state).color(color::ACCENT));
+}
+
+/// A number set to the right in a field of fixed width, so that nothing jumps, with its unit.
+fn figure(ui: &mut Ui, value: &str, unit: &str, help: &str, width: f32) {
+    ui.scope(|ui| {
+        ui.spacing_mut().item_spacing.x = space::TIGHT;
+        let size = egui::vec2(width, space::ROW_HEIGHT);
+        let layout = Layout::right_to_left(Align::Center);
+        ui.allocate_ui_with_layout(size, layout, |ui| {
+            ui.set_min_size(size);
+            ui.label(RichText::new(value).color(color::TEXT_STRONG)).on_hover_text(help);
+        });
+        if !unit.is_empty() {
+            ui.label(RichText::new(unit).color(color::TEXT_DIM)).on_hover_text(help);
+        }
+    });
+}
+
+/// A fraction in percent, in about three digits.
+fn percent(fraction: f64) -> String {
+    let percent = 100.0 * fraction;
+    let decimals = match percent {
+        _ if percent < 10.0 => 2,
+        _ if percent < 100.0 => 1,
+        _ => 0,
+    };
+    format!("{percent:.decimals$}")
+}
+
+fn seconds(seconds: f64) -> String {
+    if seconds < 60.0 {
+        return format!("{seconds:.1} s");
+    }
+    let minutes = (seconds / 60.0).floor();
+    format!("{minutes:.0}:{:02.0} min", (seconds - 60.0 * minutes).floor())
+}
+
+fn zoom(ui: &mut Ui, scale: f32) {
+    let text = format!("{:.0} %", 100.0 * scale);
+    ui.label(RichText::new(text).color(color::TEXT_DIM))
+        .on_hover_text("Zoom of the picture. Ctrl and the wheel zoom to pixels; Home fits it.");
+}
+
+fn probe(ui: &mut Ui, viewport: &Viewport) {
+    let Some(probe) = viewport.probe else { return };
+    ui.separator();
+    let [r, g, b, _] = probe.value;
+    let text = format!(
+        "{:>4}, {:<4} {:>8} {:>8} {:>8}",
+        probe.pixel.x,
+        probe.pixel.y,
+        channel(r),
+        channel(g),
+        channel(b)
+    );
+    ui.label(RichText::new(text).monospace().color(color::TEXT))
+        .on_hover_text("The pixel under the pointer and its linear red, green and blue.");
+}
+
+/// A channel in about four digits.
+fn channel(value: f32) -> String {
+    if value == 0.0 || (0.001..10_000.0).contains(&value.abs()) {
+        let digits = if value.abs() >= 100.0 { 1 } else { 4 };
+        format!("{value:.digits$}")
+    } else {
+        format!("{value:.1e}")
+    }
+}
+
+/// Exposure and tone curve, from right to left.
+fn display(ui: &mut Ui, panel: &mut Panel<'_>) {
+    let mut edit = None;
+    let tone = &mut panel.editor.document.tone;
+    let (name, next) = match tone.curve {
+        ToneCurve::Linear => ("Linear", ToneCurve::Filmic),
+        ToneCurve::Filmic => ("Filmic", ToneCurve::Linear),
+    };
+    let help = "Tone curve: filmic rolls bright fire off softly, linear clips it. For display and \
+                PNG only. Click to switch.  [T]";
+    let button = Button::new(name).min_size(egui::vec2(58.0, 0.0));
+    if ui.add(button).on_hover_text(help).clicked() {
+        tone.curve = next;
+        edit = Some("tone curve");
+    }
+    let field = DragValue::new(&mut tone.exposure)
+        .range(-20.0..=20.0)
+        .speed(0.02)
+        .custom_formatter(|value, _| format!("{value:+.1}"));
+    let response = ui.add_sized([44.0, space::ROW_HEIGHT], field).accessible_name("Exposure");
+    let help = "Exposure in stops, for display and PNG only. Drag, click to type, E and Shift+E \
+                for half stops, double-click for 0.";
+    if response.on_hover_text(help).changed() {
+        edit = Some("exposure");
+    }
+    ui.label(RichText::new("exposure").color(color::TEXT_DIM));
+    if let Some(name) = edit {
+        panel.editor.name_edit(name);
+    }
+}

@@ -1,0 +1,160 @@
+//! The look of the window in one place: colors, spacing, type. Panels take from here and spell out
+//! none of their own. Everything but the accents is neutral gray, so that nothing tints the eye
+//! that judges the picture.
+
+use egui::{Color32, Context, CornerRadius, FontFamily, FontId, Margin, Stroke, TextStyle, vec2};
+
+/// Colors, all sRGB-coded.
+pub mod color {
+    use egui::Color32;
+
+    /// Around the picture.
+    pub const SURROUND: Color32 = Color32::from_gray(44);
+    /// Panels and bars.
+    pub const PANEL: Color32 = Color32::from_gray(30);
+    /// Text fields and slider rails: lower than the panel.
+    pub const WELL: Color32 = Color32::from_gray(19);
+    /// Buttons and boxes at rest.
+    pub const RAISED: Color32 = Color32::from_gray(52);
+    /// The same under the pointer.
+    pub const RAISED_HOVER: Color32 = Color32::from_gray(66);
+    /// The same while pressed.
+    pub const RAISED_ACTIVE: Color32 = Color32::from_gray(80);
+    /// Menus and tooltips, which float above the panels.
+    pub const FLOATING: Color32 = Color32::from_gray(38);
+    /// Lines between panels and around what floats.
+    pub const LINE: Color32 = Color32::from_gray(54);
+    /// Values and headings.
+    pub const TEXT_STRONG: Color32 = Color32::from_gray(238);
+    /// Ordinary text.
+    pub const TEXT: Color32 = Color32::from_gray(205);
+    /// Labels, units and explanations.
+    pub const TEXT_DIM: Color32 = Color32::from_gray(152);
+    /// What is on, selected or in progress.
+    pub const ACCENT: Color32 = Color32::from_rgb(230, 142, 62);
+    /// Selected text and pressed segments behind their text.
+    pub const ACCENT_FILL: Color32 = Color32::from_rgb(112, 66, 26);
+    /// Something to know.
+    pub const WARNING: Color32 = Color32::from_rgb(226, 184, 92);
+    /// Something that failed.
+    pub const ERROR: Color32 = Color32::from_rgb(232, 112, 98);
+}
+
+/// Distances in points.
+pub mod space {
+    /// Between things that belong together.
+    pub const TIGHT: f32 = 4.0;
+    /// Between rows and columns.
+    pub const ROW: f32 = 6.0;
+    /// Between a panel's edge and its contents.
+    pub const PANEL: i8 = 12;
+    /// Width of the panel column.
+    pub const COLUMN: f32 = 324.0;
+    /// Width of the label in a row of settings.
+    pub const LABEL: f32 = 104.0;
+    /// Width of the number in a row of settings.
+    pub const NUMBER: f32 = 68.0;
+    /// Height of a row of settings.
+    pub const ROW_HEIGHT: f32 = 20.0;
+    /// Height of the status line.
+    pub const STATUS: f32 = 28.0;
+    /// Roundness of buttons and fields.
+    pub const RADIUS: u8 = 4;
+}
+
+/// Sizes of text in points.
+pub mod size {
+    /// Explanations under a control.
+    pub const SMALL: f32 = 11.5;
+    /// Everything else.
+    pub const BODY: f32 = 13.0;
+    /// Names of panels.
+    pub const HEADING: f32 = 13.5;
+}
+
+/// Dresses `ctx` in the one dark theme.
+pub fn apply(ctx: &Context) {
+    ctx.set_theme(egui::Theme::Dark);
+    ctx.all_styles_mut(|style| {
+        set_type(style);
+        set_spacing(&mut style.spacing);
+        set_visuals(&mut style.visuals);
+        style.animation_time = 0.08;
+        style.explanation_tooltips = false;
+        style.interaction.tooltip_delay = 0.4;
+        style.interaction.selectable_labels = false;
+    });
+}
+
+fn set_type(style: &mut egui::Style) {
+    let font = |size| FontId::new(size, FontFamily::Proportional);
+    style.text_styles = [
+        (TextStyle::Small, font(size::SMALL)),
+        (TextStyle::Body, font(size::BODY)),
+        (TextStyle::Button, font(size::BODY)),
+        (TextStyle::Heading, font(size::HEADING)),
+        (TextStyle::Monospace, FontId::new(size::SMALL, FontFamily::Monospace)),
+    ]
+    .into();
+}
+
+fn set_spacing(spacing: &mut egui::style::Spacing) {
+    spacing.item_spacing = vec2(space::ROW, space::ROW);
+    spacing.button_padding = vec2(8.0, 2.0);
+    spacing.menu_margin = Margin::same(6);
+    spacing.window_margin = Margin::same(space::PANEL);
+    spacing.interact_size = vec2(40.0, space::ROW_HEIGHT);
+    spacing.slider_rail_height = 4.0;
+    spacing.combo_width = 80.0;
+    spacing.icon_width = 15.0;
+    spacing.icon_width_inner = 9.0;
+    spacing.icon_spacing = 7.0;
+    spacing.tooltip_width = 320.0;
+    spacing.indent = 14.0;
+    spacing.scroll = egui::style::ScrollStyle::thin();
+}
+
+fn set_visuals(visuals: &mut egui::Visuals) {
+    visuals.panel_fill = color::PANEL;
+    visuals.window_fill = color::FLOATING;
+    visuals.window_stroke = Stroke::new(1.0, color::LINE);
+    visuals.window_corner_radius = CornerRadius::same(space::RADIUS + 2);
+    visuals.menu_corner_radius = CornerRadius::same(space::RADIUS + 2);
+    visuals.extreme_bg_color = color::WELL;
+    visuals.code_bg_color = color::WELL;
+    visuals.faint_bg_color = Color32::from_gray(34);
+    visuals.warn_fg_color = color::WARNING;
+    visuals.error_fg_color = color::ERROR;
+    visuals.hyperlink_color = color::ACCENT;
+    visuals.weak_text_color = Some(color::TEXT_DIM);
+    visuals.selection.bg_fill = color::ACCENT_FILL;
+    visuals.selection.stroke = Stroke::new(1.0, color::TEXT_STRONG);
+    visuals.slider_trailing_fill = true;
+    visuals.handle_shape = egui::style::HandleShape::Rect { aspect_ratio: 0.5 };
+    visuals.indent_has_left_vline = false;
+    visuals.disabled_alpha = 0.45;
+
+    let widgets = &mut visuals.widgets;
+    let states = [
+        (&mut widgets.noninteractive, color::PANEL, color::LINE, color::TEXT),
+        (&mut widgets.inactive, color::RAISED, Color32::TRANSPARENT, color::TEXT),
+        (&mut widgets.hovered, color::RAISED_HOVER, Color32::TRANSPARENT, color::TEXT_STRONG),
+        (&mut widgets.active, color::RAISED_ACTIVE, Color32::TRANSPARENT, color::TEXT_STRONG),
+        (&mut widgets.open, color::RAISED_HOVER, Color32::TRANSPARENT, color::TEXT_STRONG),
+    ];
+    for (state, fill, line, text) in states {
+        state.bg_fill = fill;
+        state.weak_bg_fill = fill;
+        state.bg_stroke = Stroke::new(1.0, line);
+        state.fg_stroke = Stroke::new(1.0, text);
+        state.corner_radius = CornerRadius::same(space::RADIUS);
+        state.expansion = 0.0;
+    }
+    // Keyboard focus shows as the accent's outline; everything pressed keeps its shape.
+    widgets.active.bg_stroke = Stroke::new(1.0, color::ACCENT);
+}
+
+/// The frame of bars and panels.
+pub fn panel_frame() -> egui::Frame {
+    egui::Frame::new().fill(color::PANEL).inner_margin(Margin::symmetric(space::PANEL, 6))
+}

@@ -1,0 +1,64 @@
+//! The up axis of a volume's file, as one click. A file with y up is turned so that its y becomes
+//! the world's z, which is up everywhere else.
+
+use glam::{EulerRot, Quat, Vec3};
+
+use crate::scene::Settings;
+use crate::scene::settings::{Axis, VolumeSettings};
+
+/// The rotation about x, in degrees, that puts a file with `up` on its feet.
+fn rotation(up: Axis) -> f32 {
+    if up == Axis::Y { 90.0 } else { 0.0 }
+}
+
+/// The axis of the file that points up in the world; `None` where it is turned otherwise.
+pub fn of(volume: &VolumeSettings) -> Option<Axis> {
+    if volume.matrix.is_some() {
+        return None;
+    }
+    [Axis::Y, Axis::Z].into_iter().find(|axis| volume.rotate == [rotation(*axis), 0.0, 0.0])
+}
+
+/// Makes `up` of the volume `index` point up. The camera follows a volume that stands alone.
+pub fn set(settings: &mut Settings, index: usize, up: Axis) {
+    let alone = settings.volume.len() == 1;
+    let Some(volume) = settings.volume.get_mut(index) else { return };
+    let before = turn(volume.rotate);
+    volume.rotate = [rotation(up), 0.0, 0.0];
+    if alone {
+        let origin = Vec3::from(volume.translate);
+        let camera = &mut settings.camera;
+        let (target, offset) = (Vec3::from(camera.target), Vec3::from(camera.position));
+        let offset = offset - target;
+        let moved = origin + turn(volume.rotate) * (before.inverse() * (target - origin));
+        camera.target = moved.to_array();
+        camera.position = (moved + offset).to_array();
+    }
+}
+
+fn turn(degrees: [f32; 3]) -> Quat {
+    let [x, y, z] = degrees.map(f32::to_radians);
+    Quat::from_euler(EulerRot::ZYX, z, y, x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_camera_keeps_looking_at_the_volume() {
+        let mut settings =
+            Settings { volume: vec![VolumeSettings::default()], ..Settings::default() };
+        settings.camera.target = [0.0, 0.0, 2.0];
+        settings.camera.position = [0.0, -6.0, 3.0];
+        let z_up = settings.clone();
+        assert_eq!(of(&settings.volume[0]), Some(Axis::Z));
+        // What the file calls z is now along the world's -y.
+        set(&mut settings, 0, Axis::Y);
+        assert_eq!(of(&settings.volume[0]), Some(Axis::Y));
+        assert!(Vec3::from(settings.camera.target).distance(Vec3::new(0.0, -2.0, 0.0)) < 1e-5);
+        assert!(Vec3::from(settings.camera.position).distance(Vec3::new(0.0, -8.0, 1.0)) < 1e-5);
+        set(&mut settings, 0, Axis::Z);
+        assert!(Vec3::from(settings.camera.position).distance(z_up.camera.position.into()) < 1e-5);
+    }
+}

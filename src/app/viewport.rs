@@ -1,0 +1,244 @@
+//! The picture and the hand on it: camera moves, zoom to pixels, the value under the pointer.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use egui::{CursorIcon, PointerButton, Rect, Response, Sense, Stroke, Ui};
+use glam::{UVec2, Vec2, Vec3};
+
+use super::display;
+use super::navigation::Pose;
+use super::state::Editor;
+use super::theme::color;
+use super::zoom::{Placement, Zoom};
+use crate::render::Picture;
+use crate::scene::settings::CameraSettings;
+
+/// A new size has to last this long before the film takes it.
+const SETTLE: Duration = Duration::from_millis(120);
+/// Points of the wheel's travel that count as one notch.
+const NOTCH: f32 = 50.0;
+/// From this zoom on, the pixel under the pointer is outlined.
+const OUTLINE_FROM: f32 = 8.0;
+/// The zoom of the zoom-to-pixels command.
+const PIXEL_ZOOM: f32 = 8.0;
+
+/// A pixel and its linear value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Probe {
+    /// Column and row, row 0 on top.
+    pub pixel: UVec2,
+    /// Linear red, green, blue and alpha, before exposure.
+    pub value: [f32; 4],
+}
+
+/// The state of the viewport between frames.
+#[derive(Debug, Default)]
+pub struct Viewport {
+    /// How the picture is laid out.
+    pub zoom: Zoom,
+    /// What is under the pointer.
+    pub probe: Option<Probe>,
+    /// The area in framebuffer pixels that the film fills, once it has lasted.
+    settled: Option<UVec2>,
+    /// The area of the last frame and since when it has been so.
+    area: Option<(UVec2, Instant)>,
+    /// Where the pointer last was, in framebuffer pixels from the viewport's corner.
+    pointer: Option<Vec2>,
+    /// The viewport's size in framebuffer pixels.
+    size: Vec2,
+}
+
+impl Viewport {
+    /// Notes the area that the film may fill, in framebuffer pixels, at most `largest` a side.
+    /// Gives the time until a change counts, while one is on its way.
+    pub fn resize(&mut self, area: UVec2, largest: u32) -> Option<Duration> {
+        let area = area.clamp(UVec2::ONE, UVec2::splat(largest));
+        let since = match self.area {
+            Some((same, since)) if same == area => since,
+            _ => Instant::now(),
+        };
+        self.area = Some((area, since));
+        let waiting = SETTLE.checked_sub(since.elapsed());
+        if self.settled.is_none() || waiting.is_none() {
+            self.settled = Some(area);
+        }
+        waiting.filter(|_| self.settled != Some(area))
+    }
+
+    /// The size for a film that follows the window; `None` before the first frame.
+    pub fn film_size(&self) -> Option<UVec2> {
+        self.settled
+    }
+
+    /// Zooms to pixels around the pointer, or back to the whole picture.
+    pub fn toggle_pixel_zoom(&mut self, picture: Option<UVec2>) {
+        let Some(picture) = picture else { return };
+        let at = self.pointer.unwrap_or(0.5 * self.size);
+        self.zoom = match self.zoom {
+            Zoom::Fit => self.zoom.at_scale(PIXEL_ZOOM, at, picture, self.size),
+            Zoom::Pixels { .. } => Zoom::Fit,
+        };
+    }
+
+    /// Framebuffer pixels per picture pixel.
+    pub fn scale(&self, picture: UVec2) -> f32 {
+        self.zoom.place(picture, self.size).scale
+    }
+
+    /// Shows the picture in the rest of `ui` and lets the hand move camera and zoom.
+    pub fn show(&mut self, ui: &mut Ui, editor: &mut Editor, picture: Option<&Arc<Picture>>) {
+        let rect = ui.available_rect_before_wrap();
+        let response = ui.allocate_rect(rect, Sense::click_and_drag());
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Picture"));
+        let factor = ui.pixels_per_point();
+        self.size = from_egui(rect.size()) * factor;
+        self.pointer = response.hover_pos().map(|at| from_egui(at - rect.min) * factor);
+        self.navigate(ui, &response, editor, picture.map(|picture| picture.size));
+        ui.painter().rect_filled(rect, 0.0, color::SURROUND);
+        self.probe = None;
+        let Some(picture) = picture else { return };
+        let placement = self.zoom.place(picture.size, self.size);
+        let corner = from_egui(rect.min.to_vec2()) * factor;
+        let tone = editor.document.tone;
+        display::paint(ui.painter(), rect, corner, picture.clone(), placement, tone);
+        self.probe = self.pointer.and_then(|at| probe(picture, placement, at));
+        if let Some(probe) = self.probe
+            && placement.scale >= OUTLINE_FROM
+        {
+            outline(ui, rect, placement, probe.pixel, factor);
+        }
+    }
+
+    fn navigate(
+        &mut self,
+        ui: &Ui,
+        response: &Response,
+        editor: &mut Editor,
+        picture: Option<UVec2>,
+    ) {
+        let modifiers = ui.input(|input| input.modifiers);
+        let drag = from_egui(response.drag_delta());
+        let width = response.rect.width().max(1.0);
+        let primary = response.dragged_by(PointerButton::Primary);
+        if let Some(picture) = picture {
+            if primary && modifiers.command {
+                let drag = drag * ui.pixels_per_point();
+                self.zoom = self.zoom.panned(drag, picture, self.size);
+                ui.set_cursor_icon(CursorIcon::Grabbing);
+                return;
+            }
+            if response.double_clicked() {
+                self.zoom = Zoom::Fit;
+            }
+            let zoom = ui.input(egui::InputState::zoom_delta);
+            if let Some(at) = self.pointer
+                && zoom != 1.0
+            {
+                self.zoom = self.zoom.zoomed(zoom, at, picture, self.size);
+                return;
+            }
+        }
+        let camera = &mut editor.document.settings.camera;
+        let before = *camera;
+        let pose = pose(camera);
+        let name = if response.dragged_by(PointerButton::Middle) || primary && modifiers.shift {
+            set_pose(camera, pose.pan(drag / width, camera.fov_x));
+            "pan"
+        } else if primary {
+            set_pose(camera, pose.orbit(drag / width));
+            "orbit"
+        } else if response.dragged_by(PointerButton::Secondary) {
+            set_pose(camera, pose.dolly(-drag.y / 20.0));
+            "dolly"
+        } else if response.contains_pointer() {
+            let wheel = ui.input(|input| input.smooth_scroll_delta().y);
+            if wheel != 0.0 {
+                set_pose(camera, pose.dolly(wheel / NOTCH));
+            }
+            "dolly"
+        } else {
+            return;
+        };
+        if *camera != before {
+            editor.name_edit(name);
+        }
+    }
+}
+
+fn from_egui(vector: egui::Vec2) -> Vec2 {
+    Vec2::new(vector.x, vector.y)
+}
+
+/// Where the camera of these settings stands.
+pub fn pose(camera: &CameraSettings) -> Pose {
+    Pose {
+        position: Vec3::from_array(camera.position),
+        target: Vec3::from_array(camera.target),
+        up: Vec3::from_array(camera.up),
+    }
+}
+
+/// Puts the camera of these settings there; a zero drag leaves it untouched to the last bit.
+pub fn set_pose(camera: &mut CameraSettings, moved: Pose) {
+    let still = pose(camera);
+    let near = |a: Vec3, b: Vec3| a.distance(b) <= 1e-6 * still.position.distance(still.target);
+    if near(moved.position, still.position) && near(moved.target, still.target) {
+        return;
+    }
+    camera.position = moved.position.to_array();
+    camera.target = moved.target.to_array();
+}
+
+fn probe(picture: &Picture, placement: Placement, at: Vec2) -> Option<Probe> {
+    let pixel = placement.pixel_at(at, picture.size)?;
+    let index = pixel.y as usize * picture.size.x as usize + pixel.x as usize;
+    Some(Probe { pixel, value: *picture.pixels.get(index)? })
+}
+
+/// Draws a frame around a pixel.
+fn outline(ui: &Ui, rect: Rect, placement: Placement, pixel: UVec2, factor: f32) {
+    let low = (placement.corner + pixel.as_vec2() * placement.scale) / factor;
+    let min = rect.min + egui::vec2(low.x, low.y);
+    let pixel = Rect::from_min_size(min, egui::Vec2::splat(placement.scale / factor));
+    let painter = ui.painter_at(rect);
+    let dark = Stroke::new(1.0, color::WELL);
+    painter.rect_stroke(pixel.expand(1.0), 0.0, dark, egui::StrokeKind::Outside);
+    let light = Stroke::new(1.0, color::TEXT_STRONG);
+    painter.rect_stroke(pixel, 0.0, light, egui::StrokeKind::Outside);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_film_waits_for_a_size_that_lasts() {
+        let mut viewport = Viewport::default();
+        assert_eq!(viewport.resize(UVec2::new(800, 600), 8192), None);
+        assert_eq!(viewport.film_size(), Some(UVec2::new(800, 600)));
+        assert!(viewport.resize(UVec2::new(810, 600), 8192).is_some());
+        assert!(viewport.resize(UVec2::new(820, 600), 8192).is_some());
+        assert_eq!(viewport.film_size(), Some(UVec2::new(800, 600)));
+        std::thread::sleep(SETTLE + Duration::from_millis(20));
+        assert_eq!(viewport.resize(UVec2::new(820, 600), 8192), None);
+        assert_eq!(viewport.film_size(), Some(UVec2::new(820, 600)));
+        assert_eq!(Viewport::default().resize(UVec2::new(0, 9000), 8192), None);
+    }
+
+    #[test]
+    fn the_probe_reads_the_pixel_under_the_pointer() {
+        let picture = Picture {
+            generation: 1,
+            size: UVec2::new(2, 2),
+            pixels: vec![[0.0; 4], [1.0; 4], [2.0; 4], [3.0; 4]],
+            complete: true,
+            stats: Default::default(),
+        };
+        let placement = Placement { scale: 4.0, corner: Vec2::new(10.0, 10.0) };
+        let read = |x, y| probe(&picture, placement, Vec2::new(x, y)).map(|p| p.value[0]);
+        assert_eq!(read(15.0, 11.0), Some(1.0));
+        assert_eq!(read(11.0, 17.9), Some(2.0));
+        assert_eq!(read(18.1, 11.0), None);
+    }
+}

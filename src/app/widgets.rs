@@ -1,0 +1,195 @@
+//! Rows of settings: a label, a slider, an exact number, with the help of the scene file's keys.
+
+use std::ops::RangeInclusive;
+
+use egui::{
+    Align, Button, DragValue, Label, Layout, Response, RichText, Sense, Slider, SliderClamping, Ui,
+    vec2,
+};
+
+use super::theme::{color, space};
+use crate::scene::keys;
+
+/// The help of a key of the scene file, ready for a tooltip.
+pub fn key_help(path: &str) -> String {
+    let Some(key) = keys::find(path) else { return path.to_owned() };
+    let unit = key.unit.as_ref().map_or_else(String::new, |unit| format!(" [{unit}]"));
+    format!("{}\n\n{}{unit}", key.help.trim(), key.path.replace(".N.", "."))
+}
+
+/// The first sentence of a key's help.
+pub fn key_summary(path: &str) -> String {
+    let help = keys::find(path).map(|key| key.help.clone()).unwrap_or_default();
+    let help = help.split_whitespace().collect::<Vec<_>>().join(" ");
+    match help.find(". ") {
+        Some(end) => help[..=end].to_owned(),
+        None => help,
+    }
+}
+
+/// A label of fixed width that starts a row; hovering shows the help, `name` is what it says.
+pub fn row_label(ui: &mut Ui, name: &str, help: &str) -> Response {
+    let size = vec2(space::LABEL, space::ROW_HEIGHT);
+    let layout = Layout::left_to_right(Align::Center);
+    ui.allocate_ui_with_layout(size, layout, |ui| {
+        ui.set_min_size(size);
+        let text = RichText::new(name).color(color::TEXT_DIM);
+        ui.add(Label::new(text).truncate().sense(Sense::hover()))
+    })
+    .inner
+    .on_hover_text(help)
+}
+
+/// A row with a label and any contents right of it.
+pub fn row<R>(
+    ui: &mut Ui,
+    name: &str,
+    help: &str,
+    contents: impl FnOnce(&mut Ui) -> R,
+) -> egui::InnerResponse<R> {
+    ui.horizontal(|ui| {
+        row_label(ui, name, help);
+        ui.name_inputs(name, contents)
+    })
+}
+
+/// One number: a slider over a sensible range and a field for exact values beyond it.
+pub struct Number<'a> {
+    /// What it is called, also for screen readers and undo.
+    pub name: &'a str,
+    /// Its key in the scene file, which knows its help.
+    pub key: &'a str,
+    /// What the slider covers.
+    pub soft: RangeInclusive<f32>,
+    /// What may be typed.
+    pub hard: RangeInclusive<f32>,
+    /// Whether the slider goes by factors.
+    pub logarithmic: bool,
+    /// The unit behind the number, with a space before it.
+    pub unit: &'a str,
+    /// What a double click goes back to.
+    pub reset: f32,
+}
+
+impl Number<'_> {
+    /// Shows the row; whether the value changed.
+    pub fn show(self, ui: &mut Ui, value: &mut f32) -> bool {
+        let before = *value;
+        let help = format!("{}\n\nDouble-click for {}.", key_help(self.key), self.reset);
+        ui.horizontal(|ui| {
+            let label = row_label(ui, self.name, &help);
+            let slider = self.slider(ui, value).on_hover_text(&help).labelled_by(label.id);
+            let field = self.field(ui, value).labelled_by(label.id);
+            field.on_hover_text("Click to type, drag to change; with Shift more finely.");
+            let double =
+                ui.input(|input| input.pointer.button_double_clicked(egui::PointerButton::Primary));
+            if double && (label.contains_pointer() || slider.contains_pointer()) {
+                *value = self.reset;
+            }
+        });
+        *value != before
+    }
+
+    fn slider(&self, ui: &mut Ui, value: &mut f32) -> Response {
+        let gaps = 2.0 * ui.spacing().item_spacing.x;
+        ui.spacing_mut().slider_width =
+            (ui.available_width() - space::NUMBER - gaps).clamp(40.0, 400.0);
+        let smallest = f64::from(self.soft.end() / 1e4).max(1e-6);
+        ui.add(
+            Slider::new(value, self.soft.clone())
+                .show_value(false)
+                .clamping(SliderClamping::Never)
+                .logarithmic(self.logarithmic)
+                .smallest_positive(smallest),
+        )
+    }
+
+    fn field(&self, ui: &mut Ui, value: &mut f32) -> Response {
+        let span = f64::from(self.soft.end() - self.soft.start());
+        let speed = if self.logarithmic {
+            f64::from(value.abs()).max(span * 1e-4) * 0.01
+        } else {
+            span / 300.0
+        };
+        let field = DragValue::new(value)
+            .speed(speed)
+            .range(self.hard.clone())
+            .max_decimals(4)
+            .suffix(self.unit)
+            .custom_formatter(|value, _| significant(value));
+        ui.add_sized([space::NUMBER, space::ROW_HEIGHT], field)
+    }
+}
+
+/// A number in four significant digits, without trailing zeros.
+pub fn significant(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    let digits = 3 - value.abs().log10().floor() as i32;
+    let decimals = usize::try_from(digits.clamp(0, 7)).unwrap_or(0);
+    let text = format!("{value:.decimals$}");
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text
+    }
+}
+
+/// A large count with a prefix: 24.1 M.
+pub fn count(value: f64) -> String {
+    let scales = [(1e12, " T"), (1e9, " G"), (1e6, " M"), (1e3, " k")];
+    match scales.into_iter().find(|(scale, _)| value >= *scale) {
+        Some((scale, prefix)) => format!("{:.1}{prefix}", value / scale),
+        None => format!("{value:.0}"),
+    }
+}
+
+/// Three numbers in a row, such as a point in space; whether any changed.
+pub fn vector(ui: &mut Ui, name: &str, key: &str, value: &mut [f32; 3], speed: f32) -> bool {
+    let before = *value;
+    let help = key_help(key);
+    ui.horizontal(|ui| {
+        row_label(ui, name, &help);
+        let gaps = 2.0 * ui.spacing().item_spacing.x;
+        let width = ((ui.available_width() - gaps) / 3.0).max(30.0);
+        for (component, axis) in value.iter_mut().zip(["x", "y", "z"]) {
+            let field = DragValue::new(component)
+                .speed(speed)
+                .max_decimals(4)
+                .custom_formatter(|value, _| significant(value));
+            ui.add_sized([width, space::ROW_HEIGHT], field)
+                .accessible_name(format!("{name} {axis}"))
+                .on_hover_text(&help);
+        }
+    });
+    *value != before
+}
+
+/// A row of buttons of which at most one is on; the index of the one that was clicked.
+pub fn segments(ui: &mut Ui, choices: &[(&str, &str)], chosen: Option<usize>) -> Option<usize> {
+    let mut clicked = None;
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 2.0;
+        for (index, (text, help)) in choices.iter().enumerate() {
+            let button = Button::selectable(chosen == Some(index), *text).frame_when_inactive(true);
+            if ui.add(button).on_hover_text(*help).clicked() {
+                clicked = Some(index);
+            }
+        }
+    });
+    clicked
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_read_well() {
+        let texts = [0.0, 1.0, 12.5, 1500.0, 0.012_345, -0.5, 123_456.0].map(significant);
+        assert_eq!(texts, ["0", "1", "12.5", "1500", "0.01235", "-0.5", "123456"]);
+        assert_eq!(count(24_100_000.0), "24.1 M");
+        assert_eq!(count(12.0), "12");
+    }
+}

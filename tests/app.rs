@@ -1,0 +1,379 @@
+//! The window, driven through its accessible names, on a real render state but without a display.
+//!
+//! Without a graphics adapter the tests are skipped with a message, unless
+//! `FLAMBEAU_REQUIRE_WINDOW_TESTS=1` says that there has to be one.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use egui::accesskit::Role;
+use egui::{Key, Modifiers};
+use egui_kittest::kittest::Queryable;
+use egui_kittest::wgpu::{WgpuTestRenderer, create_render_state, default_wgpu_setup};
+use egui_kittest::{Harness, SnapshotOptions};
+use flambeau::app::{App, Dialogs, Document, Level, Options};
+use flambeau::scene;
+
+/// A ball of glowing smoke on a small fixed film that ends after a few samples.
+const BALL: &str = r#"
+[camera]
+position = [0.0, -5.0, 0.0]
+
+[film]
+size = [64, 48]
+seed = 7
+spp = 4
+
+[[volume]]
+name = "ball"
+shape = "sphere"
+density = { scale = 2.0 }
+albedo = 0.4
+emission = { mode = "source", le = [2.0, 0.7, 0.2] }
+"#;
+
+struct Window {
+    harness: Harness<'static, Option<App>>,
+    folder: tempfile::TempDir,
+}
+
+impl Window {
+    /// A window on the text of a scene; `None` without an adapter.
+    fn open(scene: &str) -> Option<Self> {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("scene.toml");
+        std::fs::write(&path, scene).unwrap();
+        let state = render_state()?;
+        let options = Options {
+            source: Some(path.to_str().unwrap().to_owned()),
+            threads: Some(1),
+            dialogs: Dialogs::Typed,
+        };
+        let renderer = WgpuTestRenderer::from_render_state(state.clone());
+        let harness = Harness::builder().with_size([900.0, 600.0]).renderer(renderer);
+        let frame = move |ui: &mut egui::Ui, app: &mut Option<App>| {
+            let ctx = ui.ctx().clone();
+            let app = app.get_or_insert_with(|| App::new(&ctx, &state, options.clone()).unwrap());
+            app.frame(ui);
+        };
+        let mut window = Self { harness: harness.build_ui_state(frame, None), folder };
+        window.until("the scene is open", |app| !app.editor().document.settings.volume.is_empty());
+        Some(window)
+    }
+
+    fn app(&self) -> &App {
+        self.harness.state().as_ref().unwrap()
+    }
+
+    fn document(&self) -> &Document {
+        &self.app().editor().document
+    }
+
+    /// Runs frames until `condition` holds.
+    fn until(&mut self, what: &str, condition: impl Fn(&App) -> bool) {
+        let start = Instant::now();
+        loop {
+            self.harness.step();
+            if condition(self.app()) {
+                break;
+            }
+            assert!(start.elapsed() < Duration::from_secs(60), "still waiting until {what}");
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        self.settle();
+    }
+
+    /// Runs the few frames that layouts take to come to rest.
+    fn settle(&mut self) {
+        self.harness.run_steps(6);
+    }
+
+    fn until_finished(&mut self) {
+        self.until("the picture is finished", |app| {
+            let engine = app.engine();
+            engine.is_current() && engine.picture().is_some_and(|picture| picture.stats.finished)
+        });
+    }
+
+    fn click(&mut self, role: Role, name: &str) {
+        // What is scrolled out of sight cannot be clicked.
+        self.harness.get_by_role_and_label(role, name).scroll_to_me();
+        self.settle();
+        self.harness.get_by_role_and_label(role, name).click();
+        self.harness.step();
+        self.settle();
+    }
+
+    fn press(&mut self, modifiers: Modifiers, key: Key) {
+        self.harness.key_press_modifiers(modifiers, key);
+        self.harness.step();
+        self.settle();
+    }
+
+    /// Types into the path bar, which has to be open, and confirms.
+    fn type_path(&mut self, path: &str) {
+        let field = self.harness.get_by_role_and_label(Role::TextInput, "Path");
+        field.set_text_value_accesskit(path);
+        self.harness.step();
+        self.settle();
+        self.press(Modifiers::NONE, Key::Enter);
+    }
+
+    /// Saves by a shortcut and a typed path.
+    fn save(&mut self, modifiers: Modifiers, name: &str) -> PathBuf {
+        let path = self.folder.path().join(name);
+        self.press(modifiers, Key::S);
+        self.type_path(path.to_str().unwrap());
+        self.until("the file is saved", |app| !app.notices().list().is_empty());
+        assert_eq!(self.app().notices().list()[0].level, Level::Done);
+        path
+    }
+
+    fn has(&self, text: &str) -> bool {
+        self.harness.query_all_by_label_contains(text).next().is_some()
+    }
+}
+
+/// A render state without a window; `None` with a message where there is no adapter.
+fn render_state() -> Option<egui_wgpu::RenderState> {
+    let create =
+        || create_render_state(default_wgpu_setup(), egui_wgpu::RendererOptions::PREDICTABLE);
+    match std::panic::catch_unwind(create) {
+        Ok(state) => Some(state),
+        Err(_) if std::env::var_os("FLAMBEAU_REQUIRE_WINDOW_TESTS").is_some_and(|v| v == "1") => {
+            panic!("there has to be a graphics adapter, such as Mesa's lavapipe")
+        }
+        Err(_) => {
+            eprintln!("skipped: there is no graphics adapter for the window's tests");
+            None
+        }
+    }
+}
+
+#[test]
+fn toggles_answer_to_clicks_keys_presets_and_undo() {
+    let Some(mut window) = Window::open(BALL) else { return };
+    let decoupling = |window: &Window| window.document().settings.strategy.emission_decoupling;
+    let tracking = |window: &Window| window.document().settings.strategy.emission_ratio_tracking;
+    assert!(decoupling(&window) && tracking(&window));
+    assert!(window.has("No effect here: ratio tracking already collects"));
+
+    window.press(Modifiers::NONE, Key::Num2);
+    assert!(!tracking(&window));
+    assert!(!window.has("No effect here"), "with tracking off, decoupling does something");
+    window.click(Role::CheckBox, "Emission decoupling");
+    assert!(!decoupling(&window));
+    assert!(window.has("No effect here: it needs decoupling or ratio tracking"));
+    window.click(Role::Button, "Full");
+    assert!(decoupling(&window) && tracking(&window));
+
+    window.press(Modifiers::COMMAND, Key::Z);
+    assert!(!decoupling(&window) && !tracking(&window));
+    window.press(Modifiers::COMMAND, Key::Z);
+    assert!(decoupling(&window) && !tracking(&window));
+    window.press(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z);
+    assert!(!decoupling(&window));
+}
+
+#[test]
+fn where_nothing_glows_the_toggles_say_so() {
+    let smoke = BALL.replace("\"source\", le = [2.0, 0.7, 0.2]", "\"none\"");
+    let Some(window) = Window::open(&smoke) else { return };
+    let idle = "No effect here: no volume in this scene emits light.";
+    assert_eq!(window.harness.query_all_by_label_contains(idle).count(), 3);
+}
+
+#[test]
+fn a_slider_restarts_the_render_and_undo_brings_the_value_back() {
+    let Some(mut window) = Window::open(BALL) else { return };
+    window.until_finished();
+    let before = window.app().engine().picture().unwrap().generation;
+    let density = |window: &Window| window.document().settings.volume[0].density.scale.gray();
+    assert_eq!(density(&window), Some(2.0));
+
+    let slider = window.harness.get_by_role_and_label(Role::Slider, "Density");
+    slider.set_value_accesskit(5.0);
+    window.harness.step();
+    window.settle();
+    assert_eq!(density(&window), Some(5.0));
+    window.until("a new render is shown", |app| {
+        app.engine().picture().is_some_and(|picture| picture.generation > before)
+    });
+    assert_eq!(window.app().editor().undo_name(), Some("density"));
+
+    let field = window.harness.get_by_role_and_label(Role::SpinButton, "Density");
+    field.set_value_accesskit(7.5);
+    window.harness.step();
+    window.settle();
+    assert_eq!(density(&window), Some(7.5));
+    window.press(Modifiers::COMMAND, Key::Z);
+    assert_eq!(density(&window), Some(5.0));
+    window.press(Modifiers::COMMAND, Key::Z);
+    assert_eq!(density(&window), Some(2.0));
+    assert_eq!(window.app().editor().undo_name(), None);
+}
+
+#[test]
+fn a_drag_on_the_picture_orbits_as_one_edit() {
+    let Some(mut window) = Window::open(BALL) else { return };
+    let before = window.document().settings.camera;
+    let start = window.harness.get_by_role_and_label(Role::Image, "Picture").rect().center();
+    window.harness.drag_at(start);
+    for step in 1..6 {
+        window.harness.hover_at(start + egui::vec2(12.0 * step as f32, 4.0));
+    }
+    window.harness.drop_at(start + egui::vec2(80.0, 4.0));
+    window.harness.step();
+    window.settle();
+    let after = window.document().settings.camera;
+    assert_ne!(after.position, before.position);
+    assert_eq!(after.target, before.target);
+    window.press(Modifiers::COMMAND, Key::Z);
+    assert_eq!(window.document().settings.camera, before);
+}
+
+#[test]
+fn typed_paths_open_and_broken_ones_say_why_and_change_nothing() {
+    let Some(mut window) = Window::open(BALL) else { return };
+    let other = window.folder.path().join("other.toml");
+    std::fs::write(&other, BALL.replace("\"ball\"", "\"other\"")).unwrap();
+    let broken = window.folder.path().join("broken.toml");
+    std::fs::write(&broken, "[camera]\nfov = 3\n").unwrap();
+
+    window.press(Modifiers::COMMAND, Key::L);
+    window.type_path(other.to_str().unwrap());
+    window.until("the other scene is open", |app| {
+        app.editor().document.settings.volume[0].name == "other"
+    });
+
+    window.press(Modifiers::COMMAND, Key::O);
+    window.type_path(broken.to_str().unwrap());
+    window.until("the failure is told", |app| !app.notices().list().is_empty());
+    assert!(window.has("broken.toml") && window.has("fov_x"), "the key and the nearest known one");
+    assert_eq!(window.document().settings.volume[0].name, "other");
+    window.click(Role::Button, "Dismiss");
+    assert!(window.app().notices().list().is_empty());
+
+    window.press(Modifiers::COMMAND, Key::O);
+    window.press(Modifiers::NONE, Key::Escape);
+    assert!(window.harness.query_by_role_and_label(Role::TextInput, "Path").is_none());
+}
+
+#[derive(Debug)]
+struct Dropped(PathBuf);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|error| error.to_string())
+    }
+}
+
+#[test]
+fn a_dropped_file_opens() {
+    let Some(mut window) = Window::open(BALL) else { return };
+    let path = window.folder.path().join("dropped.toml");
+    std::fs::write(&path, BALL.replace("\"ball\"", "\"dropped\"")).unwrap();
+    window.harness.input_mut().dropped_files.push(Arc::new(Dropped(path)));
+    window.until("the dropped scene is open", |app| {
+        app.editor().document.settings.volume[0].name == "dropped"
+    });
+}
+
+#[test]
+fn pause_holds_the_samples_and_restart_throws_them_away() {
+    let endless = BALL.replace("spp = 4", "spp = 0");
+    let Some(mut window) = Window::open(&endless) else { return };
+    window.until("there are samples", |app| {
+        app.engine().picture().is_some_and(|picture| picture.stats.samples_per_pixel > 2.0)
+    });
+    window.press(Modifiers::NONE, Key::Space);
+    assert!(window.app().engine().paused());
+    std::thread::sleep(Duration::from_millis(200));
+    window.settle();
+    let held = window.app().engine().picture().unwrap().clone();
+    std::thread::sleep(Duration::from_millis(200));
+    window.settle();
+    assert!(Arc::ptr_eq(&held, window.app().engine().picture().unwrap()));
+
+    window.click(Role::Button, "Resume");
+    assert!(!window.app().engine().paused());
+    window.press(Modifiers::NONE, Key::R);
+    window.until("a new render is shown", |app| {
+        app.engine().picture().is_some_and(|picture| picture.generation > held.generation)
+    });
+}
+
+#[test]
+fn the_panels_fold_and_the_menus_know_the_commands() {
+    let Some(mut window) = Window::open(BALL) else { return };
+    let wide = |window: &Window| {
+        window.harness.get_by_role_and_label(Role::Image, "Picture").rect().width()
+    };
+    let before = wide(&window);
+    window.press(Modifiers::NONE, Key::N);
+    assert!(wide(&window) > before + 200.0);
+    assert!(window.harness.query_by_role_and_label(Role::CheckBox, "Majorant boost").is_none());
+    window.click(Role::Button, "View");
+    let item = window.harness.get_by_label_contains("Fold the panels");
+    item.click();
+    window.harness.step();
+    window.settle();
+    assert_eq!(wide(&window), before);
+}
+
+#[test]
+fn saved_files_hold_what_is_shown() {
+    let Some(mut window) = Window::open(BALL) else { return };
+    window.click(Role::Button, "Fixed");
+    window.until_finished();
+    let size = window.app().engine().picture().unwrap().size;
+    assert_eq!(size.to_array(), [64, 48]);
+
+    let exr = window.save(Modifiers::COMMAND, "picture.exr");
+    let snapshot = flambeau::image::exr::read_snapshot(&exr).unwrap();
+    assert_eq!(snapshot.film.size(), size);
+    assert_eq!(snapshot.film.sample_range(), (4, 4));
+
+    let toml = window.save(Modifiers::COMMAND.plus(Modifiers::ALT), "scene copy");
+    let toml = toml.with_extension("toml");
+    assert_eq!(scene::load(toml.to_str().unwrap()).unwrap(), window.document().settings);
+
+    // The PNG is what the shader shows: the middle of each block of the enlarged picture.
+    let png = window.save(Modifiers::COMMAND.plus(Modifiers::SHIFT), "picture.png");
+    let png = image::open(png).unwrap().into_rgb8();
+    window.click(Role::Button, "Dismiss");
+    let area = window.harness.get_by_role_and_label(Role::Image, "Picture").rect();
+    let shown = window.harness.render().unwrap();
+    let scale = (area.width() / 64.0).min(area.height() / 48.0).floor();
+    let corner = area.center() - scale * egui::vec2(32.0, 24.0);
+    let mut bright = 0;
+    for (x, y, code) in png.enumerate_pixels() {
+        let at = corner.round() + scale * egui::vec2(x as f32 + 0.5, y as f32 + 0.5);
+        let pixel = shown.get_pixel(at.x as u32, at.y as u32);
+        for channel in 0..3 {
+            let (a, b) = (i32::from(code[channel]), i32::from(pixel[channel]));
+            assert!((a - b).abs() <= 1, "pixel {x},{y}: {code:?} saved, {pixel:?} shown");
+            bright += i32::from(a > 60);
+        }
+    }
+    assert!(bright > 100, "the ball is not in the picture");
+}
+
+#[test]
+fn the_window_looks_as_it_did() {
+    let Some(mut window) = Window::open(BALL) else { return };
+    window.click(Role::Button, "Fixed");
+    window.until_finished();
+    window.harness.remove_cursor();
+    window.settle();
+    // Seconds and collisions a second differ from run to run.
+    let status = egui::Rect::from_min_max(egui::pos2(70.0, 570.0), egui::pos2(560.0, 600.0));
+    window.harness.mask(status);
+    let options = SnapshotOptions::new().max_failed_pixels(20);
+    window.harness.snapshot_options("window", &options);
+}

@@ -1,0 +1,179 @@
+//! Writes small files byte by byte, in the layouts that the fixtures do not cover: old versions,
+//! zipped buffers, double precision, files without offsets.
+
+use std::io::Write;
+
+use half::f16;
+
+/// How a file is laid out; what is in it is always the same (see [`write`]).
+#[derive(Clone, Copy, Debug)]
+pub struct Layout {
+    pub version: u32,
+    pub offsets: bool,
+    pub zip: bool,
+    pub active_mask: bool,
+    pub half: bool,
+    pub double: bool,
+    pub components: usize,
+}
+
+/// What stands outside everything else.
+pub const BACKGROUND: f64 = 0.25;
+/// The active tile at (4096, 0, 0), 4096 voxels a side.
+pub const ROOT_TILE: f64 = 2.0;
+/// The active tile at (0, 0, 128), 128 voxels a side.
+pub const UPPER_TILE: f64 = 4.0;
+/// The active tile at (0, 0, 16), 8 voxels a side.
+pub const LOWER_TILE: f64 = 3.0;
+
+/// The value of the leaf at the origin.
+pub fn leaf_value(offset: usize) -> f64 {
+    if leaf_active(offset) { offset as f64 * 0.5 } else { BACKGROUND }
+}
+
+/// Three of four voxels are active.
+pub fn leaf_active(offset: usize) -> bool {
+    offset % 4 != 1
+}
+
+/// A file with one grid "density" of voxel size 2: a leaf at the origin and three tiles. Vectors
+/// have v, 2v, 3v for what a scalar grid has v.
+pub fn write(layout: &Layout) -> Vec<u8> {
+    Writer { layout: *layout, bytes: Vec::new() }.file()
+}
+
+struct Writer {
+    layout: Layout,
+    bytes: Vec<u8>,
+}
+
+impl Writer {
+    fn file(mut self) -> Vec<u8> {
+        let layout = self.layout;
+        self.bytes.extend(b" BDV\0\0\0\0");
+        self.u32(layout.version);
+        self.bytes.extend([0; 8]);
+        self.bytes.push(layout.offsets.into());
+        if layout.version < 222 {
+            self.bytes.push(layout.zip.into());
+        }
+        self.bytes.extend([b'0'; 36]);
+        self.u32(0);
+        self.u32(1);
+        self.text("density");
+        let value = match (layout.double, layout.components) {
+            (false, 1) => "float",
+            (true, 1) => "double",
+            (false, _) => "vec3s",
+            (true, _) => "vec3d",
+        };
+        self.text(&format!("Tree_{value}_5_4_3{}", if layout.half { "_HalfFloat" } else { "" }));
+        self.text("");
+        let offsets = self.bytes.len();
+        self.bytes.extend([0; 24]);
+        let start = self.bytes.len() as i64;
+        self.grid();
+        if layout.offsets {
+            let end = self.bytes.len() as i64;
+            let all: Vec<u8> = [start, start, end].iter().flat_map(|at| at.to_le_bytes()).collect();
+            self.bytes[offsets..offsets + 24].copy_from_slice(&all);
+        }
+        self.bytes
+    }
+
+    fn grid(&mut self) {
+        let layout = self.layout;
+        if layout.version >= 222 {
+            self.u32(u32::from(layout.zip) | u32::from(layout.active_mask) << 1);
+        }
+        self.u32(0);
+        self.text("UniformScaleMap");
+        (0..15).for_each(|_| self.bytes.extend(2.0_f64.to_le_bytes()));
+        self.u32(1);
+        self.value(BACKGROUND);
+        self.u32(1);
+        self.u32(1);
+        [4096_i32, 0, 0].iter().for_each(|c| self.bytes.extend(c.to_le_bytes()));
+        self.value(ROOT_TILE);
+        self.bytes.push(1);
+        self.bytes.extend([0; 12]);
+        self.internal(32 * 32 * 32, 1, UPPER_TILE);
+        self.internal(16 * 16 * 16, 2, LOWER_TILE);
+        self.mask(512, leaf_active);
+        self.mask(512, leaf_active);
+        if layout.version < 222 {
+            self.bytes.extend([0; 12]);
+            self.bytes.push(1);
+        }
+        let values: Vec<f64> = (0..512).map(leaf_value).collect();
+        self.values(&values, leaf_active);
+    }
+
+    /// An internal node whose first place is a child and another one a tile.
+    fn internal(&mut self, places: usize, tile_place: usize, tile: f64) {
+        self.mask(places, |place| place == 0);
+        self.mask(places, |place| place == tile_place);
+        let mut values = vec![BACKGROUND; places];
+        values[tile_place] = tile;
+        if self.layout.version < 222 {
+            values.remove(0);
+        }
+        self.values(&values, |place| place == tile_place);
+    }
+
+    fn values(&mut self, values: &[f64], active: impl Fn(usize) -> bool) {
+        let layout = self.layout;
+        let masked = layout.version >= 222 && layout.active_mask;
+        if layout.version >= 222 {
+            self.bytes.push(if masked { 0 } else { 6 });
+        }
+        let stored = values.iter().enumerate().filter(|&(place, _)| !masked || active(place));
+        let stored: Vec<f64> = stored.map(|(_, &value)| value).collect();
+        let mut raw = Writer { layout, bytes: Vec::new() };
+        match layout.half {
+            true => stored.iter().for_each(|&value| raw.half(value)),
+            false => stored.iter().for_each(|&value| raw.value(value)),
+        }
+        if !layout.zip {
+            self.bytes.extend(raw.bytes);
+            return;
+        }
+        let mut zip = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::fast());
+        zip.write_all(&raw.bytes).unwrap();
+        let zip = zip.finish().unwrap();
+        let worth_it = zip.len() < raw.bytes.len();
+        let size = if worth_it { zip.len() as i64 } else { -(raw.bytes.len() as i64) };
+        self.bytes.extend(size.to_le_bytes());
+        self.bytes.extend(if worth_it { zip } else { raw.bytes });
+    }
+
+    fn value(&mut self, value: f64) {
+        for component in 1..=self.layout.components {
+            let value = value * component as f64;
+            match self.layout.double {
+                true => self.bytes.extend(value.to_le_bytes()),
+                false => self.bytes.extend((value as f32).to_le_bytes()),
+            }
+        }
+    }
+
+    fn half(&mut self, value: f64) {
+        for component in 1..=self.layout.components {
+            self.bytes.extend(f16::from_f64(value * component as f64).to_le_bytes());
+        }
+    }
+
+    fn mask(&mut self, bits: usize, on: impl Fn(usize) -> bool) {
+        let byte = |first: usize| (0..8).map(|bit| u8::from(on(first + bit)) << bit).sum::<u8>();
+        self.bytes.extend((0..bits).step_by(8).map(byte));
+    }
+
+    fn u32(&mut self, value: u32) {
+        self.bytes.extend(value.to_le_bytes());
+    }
+
+    fn text(&mut self, text: &str) {
+        self.u32(text.len() as u32);
+        self.bytes.extend(text.bytes());
+    }
+}

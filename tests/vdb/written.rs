@@ -1,0 +1,65 @@
+//! The layouts that the fixtures do not cover.
+
+use flambeau::error::NO_PROGRESS;
+use flambeau::volume::grid::{SparseGrid, Voxel};
+use flambeau::volume::vdb::{Directory, VdbValues};
+use glam::{DVec3, IVec3};
+
+use crate::writer::{
+    BACKGROUND, LOWER_TILE, Layout, ROOT_TILE, UPPER_TILE, leaf_active, leaf_value, write,
+};
+
+/// Every combination of what a layout can be.
+fn layouts() -> impl Iterator<Item = Layout> {
+    let versions = [220, 221, 222, 224, 225];
+    (0..versions.len() * 64).map(move |n| Layout {
+        version: versions[n / 64],
+        offsets: n & 1 != 0,
+        zip: n & 2 != 0,
+        active_mask: n & 4 != 0,
+        half: n & 8 != 0,
+        double: n & 16 != 0,
+        components: if n & 32 != 0 { 3 } else { 1 },
+    })
+}
+
+#[test]
+fn all_layouts_hold_the_same_voxels() {
+    for layout in layouts() {
+        let directory = Directory::parse("written.vdb", write(&layout), NO_PROGRESS);
+        let file = directory.unwrap().load_all(NO_PROGRESS).unwrap();
+        let grid = &file.grids[0];
+        assert_eq!(grid.info.is_half, layout.half);
+        assert_eq!(grid.info.transform.voxel_size, DVec3::splat(2.0));
+        match &grid.values {
+            VdbValues::Float(grid) if layout.components == 1 => check(grid, &layout),
+            VdbValues::Vec3(grid) if layout.components == 3 => check(grid, &layout),
+            other => panic!("{layout:?} became {other:?}"),
+        }
+    }
+}
+
+fn check<V: Voxel>(grid: &SparseGrid<V>, layout: &Layout) {
+    let expect = |value: f64, at: [i32; 3]| {
+        let want = V::from_components([1.0, 2.0, 3.0].map(|c| (c * value) as f32));
+        assert_eq!(grid.value(IVec3::from_array(at)), want, "{layout:?} at {at:?}");
+    };
+    for offset in 0..512 {
+        let place = [offset >> 6, offset >> 3 & 7, offset & 7];
+        expect(leaf_value(offset), place.map(|c| c as i32));
+    }
+    expect(BACKGROUND, [-1, 0, 0]);
+    expect(BACKGROUND, [0, 0, 8]);
+    expect(LOWER_TILE, [0, 0, 16]);
+    expect(LOWER_TILE, [7, 7, 23]);
+    expect(BACKGROUND, [0, 0, 24]);
+    expect(UPPER_TILE, [0, 0, 128]);
+    expect(UPPER_TILE, [127, 127, 255]);
+    expect(BACKGROUND, [0, 0, 256]);
+    expect(ROOT_TILE, [4096, 0, 0]);
+    expect(ROOT_TILE, [8191, 4095, 4095]);
+    expect(BACKGROUND, [4095, 0, 0]);
+    let active = (0..512).filter(|&offset| leaf_active(offset)).count() as u64;
+    let tiles = 8_u64.pow(3) + 128_u64.pow(3) + 4096_u64.pow(3);
+    assert_eq!(grid.stats().active_voxels, active + tiles, "{layout:?}");
+}
