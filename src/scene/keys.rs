@@ -157,8 +157,8 @@ mod tests {
     fn types_units_ranges_and_conditions_come_from_the_struct() {
         let fov = find("camera.fov_x").unwrap();
         assert_eq!((fov.kind.as_str(), fov.unit.as_deref()), ("number", Some("degrees")));
-        assert_eq!(fov.range.as_deref(), Some("0.1..179"));
-        assert_eq!(fov.limits, [0.1, 179.0]);
+        assert_eq!(fov.range.as_deref(), Some("> 0, <= 179.9"));
+        assert_eq!(fov.limits[1], 179.9);
         assert_eq!(fov.default.as_deref(), Some("36.0"));
         let radius = find("volume.3.radius").unwrap();
         assert_eq!(radius.only.as_deref(), Some("shape = \"sphere\""));
