@@ -33,6 +33,9 @@ fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
 fn footprint(center: vec2f) -> vec3f {
     let last = vec2i(view.size) - 1;
     let taps = clamp(i32(ceil(view.step - 0.001)), 1, 6);
+    if taps == 1 {
+        return textureLoad(picture, clamp(vec2i(floor(center)), vec2i(0), last), 0).rgb;
+    }
     let low = center - 0.5 * view.step;
     var sum = vec3f(0.0);
     for (var y = 0; y < taps; y++) {

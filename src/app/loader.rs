@@ -299,6 +299,19 @@ mod tests {
     }
 
     #[test]
+    fn a_cancelled_job_has_no_outcome() {
+        let loader = loader();
+        loader.request(Job::Open(scene::DEFAULT_SCENE.to_owned()), None);
+        loader.cancel();
+        let start = Instant::now();
+        while loader.progress().is_some() {
+            assert!(start.elapsed() < Duration::from_secs(60), "still at work");
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        assert!(loader.poll().is_none());
+    }
+
+    #[test]
     fn failures_name_what_was_asked_for() {
         let loader = loader();
         loader.request(Job::Open("no/such/file.vdb".to_owned()), None);

@@ -71,6 +71,8 @@ pub fn run(source: Option<String>) -> Result<()> {
     let options = eframe::NativeOptions {
         viewport,
         renderer: eframe::Renderer::Wgpu,
+        // Flat panels have no gradients to dither, and each pixel costs on a software driver.
+        dithering: false,
         ..eframe::NativeOptions::default()
     };
     let create: eframe::AppCreator<'_> = Box::new(|creation| {

@@ -95,9 +95,11 @@ impl Viewport {
         self.size = from_egui(rect.size()) * factor;
         self.pointer = response.hover_pos().map(|at| from_egui(at - rect.min) * factor);
         self.navigate(ui, &response, editor, picture.map(|picture| picture.size));
-        ui.painter().rect_filled(rect, 0.0, color::SURROUND);
         self.probe = None;
-        let Some(picture) = picture else { return };
+        let Some(picture) = picture else {
+            ui.painter().rect_filled(rect, 0.0, color::SURROUND);
+            return;
+        };
         let placement = self.zoom.place(picture.size, self.size);
         let corner = from_egui(rect.min.to_vec2()) * factor;
         let tone = editor.document.tone;

@@ -12,6 +12,11 @@ use crate::app::widgets::{count, finite};
 use crate::image::tone::ToneCurve;
 use crate::render::RenderStats;
 
+/// Room that the zoom takes.
+const ZOOM_WIDTH: f32 = 70.0;
+/// Room that the value under the pointer takes.
+const PROBE_WIDTH: f32 = 280.0;
+
 /// Shows the line.
 pub fn show(ui: &mut Ui, panel: &mut Panel<'_>, engine: &Engine, viewport: &Viewport) {
     ui.horizontal_centered(|ui| {
@@ -35,12 +40,17 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>, engine: &Engine, viewport: &View
             }
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            // What does not fit beside the figures is left out, the least needed first.
             display(ui, panel);
-            if let Some(picture) = engine.picture() {
+            if let Some(picture) = engine.picture()
+                && ui.available_width() > ZOOM_WIDTH
+            {
                 ui.separator();
                 zoom(ui, viewport.scale(picture.size));
             }
-            probe(ui, viewport);
+            if ui.available_width() > PROBE_WIDTH {
+                probe(ui, viewport);
+            }
         });
     });
 }
