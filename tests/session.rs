@@ -5,10 +5,15 @@ use std::sync::mpsc::{Receiver, channel};
 use std::sync::{Arc, Condvar, Mutex};
 use std::time::{Duration, Instant};
 
+use flambeau::error::NO_PROGRESS;
 use flambeau::math::Rgb;
+use flambeau::render::estimate::{PixelEstimate, gray};
 use flambeau::render::schedule::Limits;
-use flambeau::render::{Film, Headless, Job, Picture, Request, Session, render_headless};
-use flambeau::transport::{PathSample, PixelSampler};
+use flambeau::render::{
+    Film, FilmStats, Headless, Job, Picture, Request, Session, render_headless,
+};
+use flambeau::scene;
+use flambeau::transport::{Frame, PathSample, PixelSampler};
 use glam::UVec2;
 
 const SIZE: UVec2 = UVec2::new(75, 50);
@@ -144,6 +149,48 @@ fn the_time_limit_ends_a_render_without_samples_limit() {
     let done = render_headless(job, &AtomicBool::new(false), &mut |_, _| {}).unwrap();
     assert!(!done.interrupted && done.seconds >= 0.2);
     assert_eq!(done.film.totals.paths, sampler.calls.load(Ordering::SeqCst));
+}
+
+/// The variance that a film reports, against the variance between renders of other seeds: the
+/// first is what one render knows of itself, the second is what it stands for. Both means over the
+/// picture scatter by a few percent at this many pixels and seeds.
+#[test]
+fn the_reported_variance_is_that_between_seeds() {
+    const SCENE: &str = "
+        environment.radiance = 0.5
+        [[volume]]
+        shape = 'sphere'
+        density.scale = 2.0
+        albedo = 0.8
+        emission = { mode = 'source', le = 1.0 }
+    ";
+    let (size, spp, seeds) = (UVec2::new(32, 32), 11, 24);
+    let folder = std::path::Path::new("/");
+    let settings = scene::parse(SCENE, "test", folder, &Default::default()).unwrap();
+    let scene = scene::build(&settings, &Default::default(), NO_PROGRESS).unwrap();
+    let scene = Arc::new(scene);
+    let (mut reported, mut means) = (0.0, Vec::new());
+    for seed in 0..seeds {
+        let job = Job {
+            sampler: Arc::new(Frame { scene: Arc::clone(&scene), size, seed }),
+            size,
+            limits: Limits { spp, seconds: None },
+            resume: None,
+            threads: Some(2),
+        };
+        let film = render_headless(job, &AtomicBool::new(false), &mut |_, _| {}).unwrap().film;
+        reported += FilmStats::of(&film).gray_variance_of_mean.unwrap() / seeds as f64;
+        let pixels = (0..size.y).flat_map(|y| (0..size.x).map(move |x| UVec2::new(x, y)));
+        let grays = pixels.map(|pixel| gray(PixelEstimate::of(&film, pixel).unwrap().mean()));
+        means.push(grays.collect::<Vec<f64>>());
+    }
+    let pixels = means[0].len();
+    let between = |pixel: usize| {
+        let mean = means.iter().map(|film| film[pixel]).sum::<f64>() / seeds as f64;
+        means.iter().map(|film| (film[pixel] - mean).powi(2)).sum::<f64>() / (seeds - 1) as f64
+    };
+    let between = (0..pixels).map(between).sum::<f64>() / pixels as f64;
+    assert!((reported / between - 1.0).abs() < 0.1, "{reported} reported, {between} between seeds");
 }
 
 /// A gray of its own for each request; can be held back, and tells how many samples it took.

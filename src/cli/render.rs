@@ -1,6 +1,6 @@
 //! `flambeau render`: a picture without a window.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
@@ -114,11 +114,11 @@ fn check_folders(arguments: &Arguments) -> Result<()> {
 }
 
 /// The snapshot to go on from, if it is one of this scene.
-fn resume(path: &PathBuf, settings: &Settings) -> Result<Snapshot> {
+fn resume(path: &Path, settings: &Settings) -> Result<Snapshot> {
     let snapshot = read_snapshot(path)?;
     let name = path.display().to_string();
-    let folder = std::path::Path::new("/");
-    let theirs = scene::parse(&snapshot.header.scene, &name, folder, &Default::default())?;
+    let text = &snapshot.header.scene;
+    let theirs = scene::parse(text, &name, Path::new("/"), &Default::default())?;
     if let Some(difference) = difference(&theirs, settings)? {
         let reason = format!(
             "the snapshot was rendered with other settings than this scene: {difference}. Render \
@@ -198,8 +198,7 @@ fn show_progress(job: Job, interrupt: &AtomicBool) -> Result<Headless> {
         };
         let by_time = limits.seconds.map_or(0.0, |end| seconds / end);
         bar.set_position((by_samples.max(by_time) * STEPS as f64) as u64);
-        let rate = film.totals.paths as f64 / film.size().as_dvec2().element_product();
-        bar.set_message(format!("{rate:.1} spp"));
+        bar.set_message(format!("{samples:.1} spp"));
     });
     bar.finish_and_clear();
     result

@@ -80,8 +80,8 @@ pub fn write(path: &Path, film: &Film, header: &Header) -> Result<()> {
     let channels: SmallVec<[_; 4]> = std::iter::zip(&names, planes)
         .map(|(name, plane)| AnyChannel::new(name.as_str(), FlatSamples::F32(plane)))
         .collect();
-    let mut attributes = LayerAttributes::default();
-    attributes.software_name = Some(text(&format!("Flambeau {}", header.version)));
+    let software_name = Some(text(&format!("Flambeau {}", header.version)));
+    let mut attributes = LayerAttributes { software_name, ..LayerAttributes::default() };
     attributes.other.extend(attribute_list(film, header));
     let encoding = Encoding {
         compression: Compression::ZIP16,
@@ -219,7 +219,7 @@ pub struct Snapshot {
 /// Reads a snapshot to go on from.
 ///
 /// # Errors
-/// When it cannot be read, was not written by [`write`], or is damaged.
+/// When it cannot be read, was not written by [`write()`], or is damaged.
 pub fn read_snapshot(path: &Path) -> Result<Snapshot> {
     let info = read_info(path)?;
     let Some(header) = info.header else {
