@@ -6,15 +6,15 @@ use std::time::{Duration, Instant};
 
 use glam::UVec2;
 
-use super::loader::{Built, Grids, Job, Loader, Report};
+use super::loader::{Built, Grids, Job, Loader, Outcome, Report, Start};
 use super::state::Document;
 use crate::error::{Error, Result};
-use crate::render::{Picture, Request, Session};
+use crate::render::{Picture, Session};
 use crate::scene::Settings;
 use crate::scene::settings::FilmSettings;
-use crate::transport::{Frame, Scene};
+use crate::transport::Scene;
 
-/// A build that takes longer than this gives way to the next edit.
+/// A build that takes longer than this gives way to the next edit, and shows how far it is.
 const PATIENCE: Duration = Duration::from_millis(250);
 
 /// What happened since the last frame.
@@ -28,19 +28,23 @@ pub enum News {
         /// What was guessed for a bare volume, one a line.
         notes: Vec<String>,
     },
-    /// A file could not be opened, or an edit could not be built.
+    /// A file could not be opened, or a sample could not be taken.
     Failed(String),
-    /// A render was started; the number is its generation.
+    /// An edit could not be built.
+    Refused(String),
+    /// The settings were built.
+    Accepted,
+    /// A render was started or asked for; the number is its generation.
     Started(u64),
 }
 
 /// The loader and the session, and what they are at.
 pub struct Engine {
     loader: Loader,
-    session: Session,
+    session: Arc<Session>,
     built: Option<Built>,
     grids: Arc<Grids>,
-    opening: Option<String>,
+    opening: Option<(String, Instant)>,
     building: Option<(Settings, Instant)>,
     /// Settings that could not be built, so that they are not tried again in every frame.
     refused: Option<Settings>,
@@ -55,17 +59,17 @@ pub struct Engine {
 /// The render under way.
 struct Started {
     scene: Arc<Scene>,
+    /// What it was built from, with the film's own size.
     settings: Settings,
-    film: FilmKey,
     generation: u64,
 }
 
-/// What of the film makes another render.
-#[derive(Clone, Copy, PartialEq, Eq)]
-struct FilmKey {
-    size: UVec2,
-    seed: u64,
-    spp: u32,
+impl Started {
+    fn new(built: &Built, start: Start) -> Self {
+        let mut settings = built.settings.clone();
+        settings.film.size = start.size.into();
+        Self { scene: built.scene.clone(), settings, generation: start.generation }
+    }
 }
 
 impl Engine {
@@ -75,9 +79,10 @@ impl Engine {
         threads: Option<usize>,
         wake: impl Fn() + Clone + Send + Sync + 'static,
     ) -> Result<Self> {
+        let session = Arc::new(Session::new(threads, wake.clone())?);
         Ok(Self {
-            loader: Loader::new(wake.clone())?,
-            session: Session::new(threads, wake)?,
+            loader: Loader::new(session.clone(), wake)?,
+            session,
             built: None,
             grids: Arc::default(),
             opening: None,
@@ -94,8 +99,8 @@ impl Engine {
     /// Opens a path or `builtin:NAME`; what is shown stays until that is built.
     pub fn open(&mut self, source: &str) {
         self.building = None;
-        self.opening = Some(source.to_owned());
-        self.loader.request(Job::Open(source.to_owned()));
+        self.opening = Some((source.to_owned(), Instant::now()));
+        self.loader.request(Job::Open(source.to_owned()), None);
     }
 
     /// Stops opening or building.
@@ -109,13 +114,15 @@ impl Engine {
 
     /// What is being opened.
     pub fn opening(&self) -> Option<&str> {
-        self.opening.as_deref()
+        self.opening.as_ref().map(|(source, _)| source.as_str())
     }
 
     /// The fraction done of a load or build that takes long enough to mention.
     pub fn progress(&self) -> Option<f32> {
-        let long = self.building.as_ref().is_some_and(|(_, since)| since.elapsed() > PATIENCE);
-        if self.opening.is_some() || long { self.loader.progress() } else { None }
+        let opening = self.opening.as_ref().map(|(_, since)| since);
+        let building = self.building.as_ref().map(|(_, since)| since);
+        let since = opening.or(building)?;
+        if since.elapsed() > PATIENCE { self.loader.progress() } else { None }
     }
 
     /// The latest picture.
@@ -173,32 +180,9 @@ impl Engine {
     pub fn poll(&mut self) -> Vec<News> {
         let mut news = Vec::new();
         while let Some(report) = self.loader.poll() {
-            let outcome = match report {
-                Report::Ended(outcome) => outcome,
-                Report::Grids(grids) => {
-                    self.grids = grids;
-                    continue;
-                }
-            };
-            self.building = None;
-            match (outcome.job, outcome.result) {
-                (_, Err(Error::Cancelled)) => self.opening = None,
-                (Job::Open(source), Ok(built)) => {
-                    self.opening = None;
-                    self.refused = None;
-                    let (settings, notes) = (built.settings.clone(), built.notes.clone());
-                    news.push(News::Opened { source, settings, notes });
-                    self.built = Some(built);
-                }
-                (Job::Open(_), Err(error)) => {
-                    self.opening = None;
-                    news.push(News::Failed(error.to_string()));
-                }
-                (Job::Build(_), Ok(built)) => self.built = Some(built),
-                (Job::Build(settings), Err(error)) => {
-                    self.refused = Some(settings);
-                    news.push(News::Failed(error.to_string()));
-                }
+            match report {
+                Report::Ended(outcome) => self.take_in(outcome, &mut news),
+                Report::Grids(grids) => self.grids = grids,
             }
         }
         self.picture = self.session.latest();
@@ -211,6 +195,35 @@ impl Engine {
         news
     }
 
+    fn take_in(&mut self, outcome: Outcome, news: &mut Vec<News>) {
+        self.building = None;
+        if let Job::Open(_) = &outcome.job {
+            self.opening = None;
+        }
+        match (outcome.job, outcome.result) {
+            (_, Err(Error::Cancelled)) => {}
+            (job, Ok(built)) => {
+                if let Some(start) = outcome.started {
+                    self.started = Some(Started::new(&built, start));
+                }
+                news.push(match job {
+                    Job::Build(_) => News::Accepted,
+                    Job::Open(source) => {
+                        self.refused = None;
+                        let (settings, notes) = (built.settings.clone(), built.notes.clone());
+                        News::Opened { source, settings, notes }
+                    }
+                });
+                self.built = Some(built);
+            }
+            (Job::Open(_), Err(error)) => news.push(News::Failed(error.to_string())),
+            (Job::Build(settings), Err(error)) => {
+                self.refused = Some(settings);
+                news.push(News::Refused(error.to_string()));
+            }
+        }
+    }
+
     /// Brings the render in line with the document on a film of `size` pixels. Called at the end
     /// of a frame; gives the time after which it should be called again, if it had to wait.
     pub fn update(
@@ -219,39 +232,42 @@ impl Engine {
         size: UVec2,
         news: &mut Vec<News>,
     ) -> Option<Duration> {
-        let film = &document.settings.film;
-        let film = FilmKey { size, seed: film.seed, spp: film.spp };
-        self.start(film, news);
-        self.build(&document.settings)
+        self.start(&document.settings.film, size, news);
+        self.build(&document.settings, size, news)
     }
 
-    /// Starts the scene that was built last, unless it runs already. The session itself sees to it
-    /// that each start of a fast series may show its first picture.
-    fn start(&mut self, film: FilmKey, news: &mut Vec<News>) {
-        let Some(built) = &self.built else { return };
-        let running =
-            |started: &Started| Arc::ptr_eq(&started.scene, &built.scene) && started.film == film;
-        if self.started.as_ref().is_some_and(running) {
+    /// The next render's number, which is news.
+    fn next_start(&mut self, size: UVec2, news: &mut Vec<News>) -> Start {
+        self.generation += 1;
+        news.push(News::Started(self.generation));
+        Start { size, generation: self.generation }
+    }
+
+    /// Starts the scene that was built last on this film, unless it runs already. The session sees
+    /// to it that each start of a fast series may show its first picture.
+    fn start(&mut self, film: &FilmSettings, size: UVec2, news: &mut Vec<News>) {
+        let Some(built) = &mut self.built else { return };
+        let wanted = FilmSettings { size: size.into(), ..*film };
+        let runs = |started: &Started| {
+            Arc::ptr_eq(&started.scene, &built.scene) && started.settings.film == wanted
+        };
+        if self.started.as_ref().is_some_and(runs) {
             return;
         }
-        self.generation += 1;
-        let scene = built.scene.clone();
-        let sampler = Frame { scene: scene.clone(), size: film.size, seed: film.seed };
-        self.session.start(Request {
-            sampler: Arc::new(sampler),
-            size: film.size,
-            spp: film.spp,
-            generation: self.generation,
-            resume: None,
-        });
-        let mut settings = built.settings.clone();
-        settings.film = FilmSettings { size: film.size.into(), seed: film.seed, spp: film.spp };
-        self.started = Some(Started { scene, settings, film, generation: self.generation });
-        news.push(News::Started(self.generation));
+        built.settings.film = wanted;
+        let built = built.clone();
+        let start = self.next_start(size, news);
+        self.session.start(built.request(start));
+        self.started = Some(Started::new(&built, start));
     }
 
     /// Asks for a build where the settings differ from what was built last.
-    fn build(&mut self, settings: &Settings) -> Option<Duration> {
+    fn build(
+        &mut self,
+        settings: &Settings,
+        size: UVec2,
+        news: &mut Vec<News>,
+    ) -> Option<Duration> {
         let fresh = |other: &Settings| same_scene(other, settings);
         let built = self.built.as_ref()?;
         let done = fresh(&built.settings) || self.refused.as_ref().is_some_and(fresh);
@@ -264,7 +280,8 @@ impl Engine {
             return (!fresh(asked)).then(|| PATIENCE.saturating_sub(since.elapsed()));
         }
         self.building = Some((settings.clone(), Instant::now()));
-        self.loader.request(Job::Build(settings.clone()));
+        let start = self.next_start(size, news);
+        self.loader.request(Job::Build(settings.clone()), Some(start));
         None
     }
 }

@@ -1,13 +1,17 @@
-//! A thread that reads and builds scenes, so that nothing blocks the window. The latest request
-//! wins: a new one cancels the one at work, and only its outcome is reported.
+//! A thread that reads and builds scenes and starts to render them, so that nothing blocks the
+//! window. The latest request wins: a new one cancels the one at work, and only its outcome is
+//! reported.
 
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, mpsc};
 
+use glam::UVec2;
+
 use crate::error::{Error, Progress, Result};
+use crate::render::{Request, Session};
 use crate::scene::{self, GridDescription, Overrides, Settings, VolumeCache};
-use crate::transport::Scene;
+use crate::transport::{Frame, Scene};
 
 /// The grids of volume files by the file's name.
 pub type Grids = HashMap<String, Vec<GridDescription>>;
@@ -29,12 +33,23 @@ pub enum Report {
     Grids(Arc<Grids>),
 }
 
+/// A render to start as soon as a job is done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Start {
+    /// Width and height of the film in pixels.
+    pub size: UVec2,
+    /// The number of the render.
+    pub generation: u64,
+}
+
 /// What came of a job.
 pub struct Outcome {
     /// The job.
     pub job: Job,
     /// The settings and the scene built from them.
     pub result: Result<Built>,
+    /// The render that was started, if one was asked for and the scene could be built.
+    pub started: Option<Start>,
 }
 
 /// A built scene and the settings that it was built from.
@@ -64,16 +79,27 @@ struct Shared {
     percent: AtomicU32,
 }
 
+/// A request.
+struct Ticket {
+    number: u64,
+    job: Job,
+    start: Option<Start>,
+}
+
 #[derive(Default)]
 struct Desk {
-    next: Option<(u64, Job)>,
+    next: Option<Ticket>,
     busy: bool,
     closed: bool,
 }
 
 impl Loader {
-    /// Starts the thread. `on_news` is called after each outcome and as work proceeds.
-    pub fn new(on_news: impl Fn() + Send + Sync + 'static) -> Result<Self> {
+    /// Starts the thread, which starts renders in `session`. `on_news` is called after each report
+    /// and as work proceeds.
+    ///
+    /// # Errors
+    /// When the system refuses to start a thread.
+    pub fn new(session: Arc<Session>, on_news: impl Fn() + Send + Sync + 'static) -> Result<Self> {
         let shared = Arc::new(Shared {
             desk: Mutex::default(),
             wake: Condvar::new(),
@@ -84,15 +110,15 @@ impl Loader {
         let worker = shared.clone();
         let thread = std::thread::Builder::new()
             .name("loader".to_owned())
-            .spawn(move || work(&worker, &sender, &on_news))
+            .spawn(move || work(&worker, &session, &sender, &on_news))
             .map_err(|error| Error::io("the loader thread", error))?;
         Ok(Self { shared, reports, thread: Some(thread) })
     }
 
-    /// Asks for `job`, cancelling any other.
-    pub fn request(&self, job: Job) {
-        let ticket = self.shared.latest.fetch_add(1, Ordering::Relaxed) + 1;
-        self.shared.desk().next = Some((ticket, job));
+    /// Asks for `job`, and to `start` a render of what it builds; cancels any other.
+    pub fn request(&self, job: Job, start: Option<Start>) {
+        let number = self.shared.latest.fetch_add(1, Ordering::Relaxed) + 1;
+        self.shared.desk().next = Some(Ticket { number, job, start });
         self.shared.wake.notify_all();
     }
 
@@ -115,6 +141,16 @@ impl Loader {
     }
 }
 
+impl Built {
+    /// Asks to render it.
+    pub fn request(&self, start: Start) -> Request {
+        let Start { size, generation } = start;
+        let film = &self.settings.film;
+        let sampler = Arc::new(Frame { scene: self.scene.clone(), size, seed: film.seed });
+        Request { sampler, size, spp: film.spp, generation, resume: None }
+    }
+}
+
 impl Drop for Loader {
     fn drop(&mut self) {
         self.cancel();
@@ -134,7 +170,7 @@ impl Shared {
     }
 
     /// Waits for the next job; `None` when the loader is dropped.
-    fn next(&self) -> Option<(u64, Job)> {
+    fn next(&self) -> Option<Ticket> {
         let mut desk = self.desk();
         desk.busy = false;
         loop {
@@ -151,11 +187,16 @@ impl Shared {
     }
 }
 
-fn work(shared: &Shared, reports: &mpsc::Sender<Report>, on_news: &(dyn Fn() + Sync)) {
+fn work(
+    shared: &Shared,
+    session: &Session,
+    reports: &mpsc::Sender<Report>,
+    on_news: &(dyn Fn() + Sync),
+) {
     let cache = VolumeCache::default();
     let mut grids = Grids::new();
-    while let Some((ticket, job)) = shared.next() {
-        let is_latest = || shared.latest.load(Ordering::Relaxed) == ticket;
+    while let Some(Ticket { number, job, start }) = shared.next() {
+        let is_latest = || shared.latest.load(Ordering::Relaxed) == number;
         let progress = |fraction: f32| {
             let percent = (100.0 * fraction) as u32;
             if shared.percent.swap(percent, Ordering::Relaxed) != percent {
@@ -170,8 +211,15 @@ fn work(shared: &Shared, reports: &mpsc::Sender<Report>, on_news: &(dyn Fn() + S
         }
         shared.desk().busy = false;
         let settings = result.as_ref().ok().map(|built| built.settings.clone());
+        let started = start.filter(|start| match &result {
+            Ok(built) => {
+                session.start(built.request(*start));
+                true
+            }
+            Err(_) => false,
+        });
         // The receiver lives as long as this thread: the loader joins it.
-        let _ = reports.send(Report::Ended(Outcome { job, result }));
+        let _ = reports.send(Report::Ended(Outcome { job, result, started }));
         on_news();
         let Some(settings) = settings else { continue };
         let still_latest = |_: f32| is_latest();
@@ -218,6 +266,10 @@ mod tests {
     use super::*;
     use std::time::{Duration, Instant};
 
+    fn loader() -> Loader {
+        Loader::new(Arc::new(Session::new(Some(1), || ()).unwrap()), || ()).unwrap()
+    }
+
     fn wait(loader: &Loader) -> Outcome {
         let start = Instant::now();
         loop {
@@ -231,11 +283,11 @@ mod tests {
 
     #[test]
     fn the_latest_request_wins() {
-        let loader = Loader::new(|| ()).unwrap();
+        let loader = loader();
         for seed in 0..50 {
             let mut settings = Settings::default();
             settings.film.seed = seed;
-            loader.request(Job::Build(settings));
+            loader.request(Job::Build(settings), None);
         }
         loop {
             let outcome = wait(&loader);
@@ -248,8 +300,8 @@ mod tests {
 
     #[test]
     fn failures_name_what_was_asked_for() {
-        let loader = Loader::new(|| ()).unwrap();
-        loader.request(Job::Open("no/such/file.vdb".to_owned()));
+        let loader = loader();
+        loader.request(Job::Open("no/such/file.vdb".to_owned()), None);
         let outcome = wait(&loader);
         assert_eq!(outcome.job, Job::Open("no/such/file.vdb".to_owned()));
         assert!(outcome.result.is_err());

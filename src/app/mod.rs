@@ -82,13 +82,20 @@ pub fn run(source: Option<String>) -> Result<()> {
 }
 
 fn no_window(error: &eframe::Error) -> Error {
-    Error::unsupported(
+    let what = match error {
+        eframe::Error::AppCreation(error) => error.to_string(),
+        eframe::Error::Winit(_) | eframe::Error::WinitEventLoop(_) => {
+            "there is no display (are DISPLAY or WAYLAND_DISPLAY set?)".to_owned()
+        }
+        eframe::Error::Wgpu(error) => format!("there is no graphics adapter: {error}"),
+    };
+    Error::invalid(
         "the window",
         "",
         format!(
-            "{error}. It needs a display and a Vulkan, Metal, DirectX 12 or OpenGL driver (on \
-             Linux without a graphics card: Mesa's lavapipe). Without a window, \
-             `flambeau render SCENE -o OUT.exr` renders to a file."
+            "{what}\nA window needs a display and a driver for Vulkan, Metal, DirectX 12 or \
+             OpenGL; without a graphics card, Mesa's lavapipe will do. `flambeau render SCENE -o \
+             OUT.exr` renders without a window."
         ),
     )
 }

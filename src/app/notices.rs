@@ -11,6 +11,8 @@ pub enum Level {
     Done,
     /// Something failed; what was there before is still there.
     Failed,
+    /// The settings as they are cannot be rendered. Leaves when they can.
+    Refused,
 }
 
 /// One message.
@@ -40,6 +42,11 @@ impl Notices {
     /// Says that something failed.
     pub fn failed(&mut self, text: impl Into<String>) {
         self.push(Notice { level: Level::Failed, text: text.into() });
+    }
+
+    /// Says why the settings cannot be rendered.
+    pub fn refused(&mut self, text: impl Into<String>) {
+        self.push(Notice { level: Level::Refused, text: text.into() });
     }
 
     fn push(&mut self, notice: Notice) {
@@ -79,6 +86,7 @@ fn bar(ui: &mut Ui, notice: &Notice) -> bool {
     let (accent, heading) = match notice.level {
         Level::Done => (color::ACCENT, "Done"),
         Level::Failed => (color::ERROR, "Failed"),
+        Level::Refused => (color::WARNING, "Not rendered"),
     };
     let frame = Frame::new()
         .fill(color::FLOATING)

@@ -9,6 +9,7 @@ use egui::{
 
 use super::theme::{color, space};
 use crate::scene::keys;
+use crate::scene::settings::Color;
 
 /// The help of a key of the scene file, ready for a tooltip.
 pub fn key_help(path: &str) -> String {
@@ -57,12 +58,10 @@ pub fn row<R>(
 pub struct Number<'a> {
     /// What it is called, also for screen readers and undo.
     pub name: &'a str,
-    /// Its key in the scene file, which knows its help.
+    /// Its key in the scene file, which knows its help and what may be typed.
     pub key: &'a str,
     /// What the slider covers.
     pub soft: RangeInclusive<f32>,
-    /// What may be typed.
-    pub hard: RangeInclusive<f32>,
     /// Whether the slider goes by factors.
     pub logarithmic: bool,
     /// The unit behind the number, with a space before it.
@@ -111,14 +110,22 @@ impl Number<'_> {
         } else {
             span / 300.0
         };
+        let [low, high] = keys::find(self.key).map_or([f64::MIN, f64::MAX], |key| key.limits);
         let field = DragValue::new(value)
             .speed(speed)
-            .range(self.hard.clone())
+            .range(low..=high)
             .max_decimals(4)
             .suffix(self.unit)
-            .custom_formatter(|value, _| significant(value));
+            .custom_formatter(|value, _| significant(value))
+            .custom_parser(finite);
         ui.add_sized([space::NUMBER, space::ROW_HEIGHT], field)
     }
+}
+
+/// A typed number; nothing where it is none, or none to calculate with.
+pub fn finite(text: &str) -> Option<f64> {
+    let digits = text.split_whitespace().collect::<String>().replace('\u{2212}', "-");
+    digits.parse().ok().filter(|value: &f64| value.abs() <= f64::from(f32::MAX))
 }
 
 /// A number in four significant digits, without trailing zeros.
@@ -157,7 +164,8 @@ pub fn vector(ui: &mut Ui, name: &str, key: &str, value: &mut [f32; 3], speed: f
             let field = DragValue::new(component)
                 .speed(speed)
                 .max_decimals(4)
-                .custom_formatter(|value, _| significant(value));
+                .custom_formatter(|value, _| significant(value))
+                .custom_parser(finite);
             ui.add_sized([width, space::ROW_HEIGHT], field)
                 .accessible_name(format!("{name} {axis}"))
                 .on_hover_text(&help);
@@ -181,6 +189,26 @@ pub fn segments(ui: &mut Ui, choices: &[(&str, &str)], chosen: Option<usize>) ->
     clicked
 }
 
+/// The one number that a slider shows for a color: its largest channel.
+pub fn strength(color: Color) -> f32 {
+    color.rgb().max_element()
+}
+
+/// `color` made as strong as `strength`, keeping its hue.
+pub fn scaled(color: Color, strength: f32) -> Color {
+    let present = color.rgb().max_element();
+    match color {
+        Color::Rgb(rgb) if present > 0.0 => Color::Rgb(rgb.map(|c| c * strength / present)),
+        _ => Color::Gray(strength),
+    }
+}
+
+/// Gray where the channels agree.
+pub fn from_rgb(rgb: [f32; 3]) -> Color {
+    let color = Color::Rgb(rgb);
+    color.gray().map_or(color, Color::Gray)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -191,5 +219,6 @@ mod tests {
         assert_eq!(texts, ["0", "1", "12.5", "1500", "0.01235", "-0.5", "123456"]);
         assert_eq!(count(24_100_000.0), "24.1 M");
         assert_eq!(count(12.0), "12");
+        assert_eq!(["1 500", "nan", "inf", "x"].map(finite), [Some(1500.0), None, None, None]);
     }
 }

@@ -1,25 +1,24 @@
 //! A bare volume in place of a scene: what its grids are, which way is up, how thick and bright it
 //! should look, and where to look from. Every guess is an ordinary setting, and is told in words.
 
+mod glow;
 mod probe;
 mod roles;
 
 use std::sync::Arc;
 
-use glam::Vec3A;
-
 use super::cache::{PlacedGrid, VolumeFile};
 use super::embedded::short_name;
 use super::frame::{bounds_in_world, frame};
 use super::settings::{
-    Albedo, CameraSettings, Color, DensitySettings, EmissionMode, EmissionSettings, LightKind,
-    LightSettings, Normalize, PhaseSettings, Settings, VolumeSettings,
+    Albedo, CameraSettings, Color, DensitySettings, LightKind, LightSettings, PhaseSettings,
+    Settings, VolumeSettings,
 };
 use crate::error::{Error, Progress, Result};
-use crate::math::{Aabb, luminance};
-use crate::volume::{blackbody, vdb::MetaValue};
+use crate::math::Aabb;
+use crate::volume::vdb::MetaValue;
 use probe::{columns, quantile, two_digits, visible_bounds};
-use roles::{Candidate, Glow};
+use roles::Candidate;
 
 /// A scene made up for a bare volume.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,11 +56,6 @@ const SOOT: Look = Look { words: &[], depth: 0.4, albedo: 0.3, radiance: 0.9 };
 const SOOT_BELOW: f32 = 0.3;
 /// The lines of sight that count as fairly thick and fairly bright.
 const FAIRLY: f32 = 0.8;
-/// Kelvin of the hottest place of a temperature without a unit, where its range tells nothing.
-const HOTTEST_KELVIN: f32 = 2500.0;
-/// Kelvin per unit of temperature in files that follow Blender.
-const BLENDER_KELVIN: f32 = 1000.0;
-
 /// Makes up a scene for `file`.
 ///
 /// # Errors
@@ -91,11 +85,12 @@ pub(super) fn guess(file: &Arc<VolumeFile>, progress: Progress) -> Result<Guess>
     }
     volume.density = density_settings(density, look.depth, &bounds, axis, &mut notes);
     if let Some((grid, kind)) = &glow {
-        volume.emission = emission_settings(grid, kind, look.radiance, &bounds, axis, &mut notes);
+        volume.emission =
+            glow::emission_settings(grid, kind, look.radiance, &bounds, axis, &mut notes);
     }
 
     let mut settings = Settings::default();
-    let visible = seen.iter().filter_map(|one| visible_bounds(&one.grid, one.max));
+    let visible = seen.iter().filter_map(|one| visible_bounds(&one.grid, one.mean));
     let visible = visible.reduce(|a, b| a.union(&b)).unwrap_or(bounds);
     let world_bounds = visible.transformed(&super::build::world_from_file(&volume));
     settings.camera = default_camera(&settings, &world_bounds);
@@ -163,7 +158,7 @@ fn is_y_up(file: &VolumeFile, bounds: &Aabb, notes: &mut Vec<String>) -> bool {
     let says = |name: &str| creator.as_ref().is_some_and(|creator| creator.contains(name));
     let from_blender = || {
         let key = |key: &String| key.starts_with("blender/") || key == "file_base_resolution";
-        sources().any(|values| values.keys().any(|name| key(name)))
+        sources().any(|values| values.keys().any(key))
     };
     let (is_y_up, why) = if says("houdini") {
         (true, "Houdini wrote it")
@@ -209,76 +204,6 @@ fn density_settings(
     let name = &density.grid.name;
     notes.push(format!("guessed: \"{name}\" is the density, made {scale} times as thick"));
     DensitySettings { grid: Some(name.clone()), scale: Color::Gray(scale) }
-}
-
-fn emission_settings(
-    candidate: &Candidate,
-    kind: &Glow,
-    wanted_radiance: f32,
-    bounds: &Aabb,
-    axis: usize,
-    notes: &mut Vec<String>,
-) -> EmissionSettings {
-    let name = &candidate.grid.name;
-    let mut emission = EmissionSettings { grid: Some(name.clone()), ..EmissionSettings::default() };
-    match kind {
-        Glow::Emission => {
-            emission.mode = EmissionMode::Grid;
-            notes.push(format!("guessed: \"{name}\" is the emission itself"));
-        }
-        Glow::Kelvin | Glow::Unitless => {
-            emission.mode = EmissionMode::Blackbody;
-            emission.normalize = Some(Normalize::T4);
-            let scale = kelvin_scale(kind, candidate.max);
-            emission.kelvin_scale = Some(scale);
-            notes.push(format!("guessed: \"{name}\" is a temperature, {scale} kelvin a unit"));
-        }
-        Glow::Flame => {
-            emission.mode = EmissionMode::Ramp;
-            emission.stops = Some(flame_stops(candidate.max));
-            notes.push(format!("guessed: \"{name}\" is flame, through a ramp of colors"));
-        }
-    }
-    let brightness = brightness_of(&emission);
-    let sums = columns(&candidate.grid, bounds, axis, brightness);
-    let scale = quantile(&sums, FAIRLY).map_or(1.0, |sum| two_digits(wanted_radiance / sum));
-    match kind {
-        Glow::Emission => emission.scale = Some(scale),
-        _ => emission.intensity = Some(scale),
-    }
-    emission
-}
-
-fn kelvin_scale(kind: &Glow, max: f32) -> f32 {
-    match kind {
-        Glow::Kelvin => 1.0,
-        _ if (1.2..=5.0).contains(&max) => BLENDER_KELVIN,
-        _ => two_digits(HOTTEST_KELVIN / max),
-    }
-}
-
-/// From nothing through red and orange to yellow at the grid's largest value.
-fn flame_stops(max: f32) -> Vec<[f32; 4]> {
-    [[0.0, 0.0, 0.0, 0.0], [0.35, 0.5, 0.05, 0.003], [0.7, 2.0, 0.6, 0.08], [1.0, 3.0, 1.6, 0.5]]
-        .map(|[value, r, g, b]| [two_digits(value * max), r, g, b])
-        .to_vec()
-}
-
-/// The luminance of the emission at a value of its grid, at intensity 1.
-fn brightness_of(emission: &EmissionSettings) -> impl Fn(Vec3A) -> f32 {
-    let (mode, scale) = (emission.mode, emission.kelvin_scale());
-    let (reference, largest) = (emission.reference_kelvin(), emission.stops().last().copied());
-    move |value| match mode {
-        EmissionMode::Blackbody => {
-            let kelvin = (value.x * scale).max(0.0);
-            luminance(blackbody::peak_normalized(kelvin)) * (kelvin / reference).powi(4)
-        }
-        EmissionMode::Ramp => largest.map_or(0.0, |[top, r, g, b]| {
-            // The ramp rises about with the square of the value.
-            luminance(Vec3A::new(r, g, b)) * (value.x.max(0.0) / top).powi(2)
-        }),
-        _ => luminance(value.max(Vec3A::ZERO)),
-    }
 }
 
 /// A little from above and from one side.

@@ -21,6 +21,9 @@ pub struct Key {
     pub default: Option<String>,
     /// The bounds of each number in it, if there are any.
     pub range: Option<String>,
+    /// The same as the smallest and the largest number; infinite where there is no bound.
+    #[serde(skip)]
+    pub limits: [f64; 2],
     /// What it does.
     pub help: String,
     /// The choices it belongs to (`shape = "sphere"`), if it does not always apply.
@@ -93,12 +96,14 @@ fn describe(path: String, schema: &Value) -> Key {
     let text = |key: &str| schema.get(key).and_then(Value::as_str).map(str::to_owned);
     let conditions: Vec<String> = schema::only(schema).iter().map(ToString::to_string).collect();
     let items = schema.get("items").map(Bounds::of).unwrap_or_default();
+    let bounds = Bounds::of(schema).or(items);
     Key {
         path,
         kind: schema::label(schema),
         unit: text("unit"),
         default: schema.get("default").and_then(toml_text),
-        range: Bounds::of(schema).or(items).words(),
+        range: bounds.words(),
+        limits: bounds.limits(),
         help: text("description").unwrap_or_default().replace('\n', " "),
         only: (!conditions.is_empty()).then(|| conditions.join(" and ")),
     }
@@ -152,7 +157,8 @@ mod tests {
     fn types_units_ranges_and_conditions_come_from_the_struct() {
         let fov = find("camera.fov_x").unwrap();
         assert_eq!((fov.kind.as_str(), fov.unit.as_deref()), ("number", Some("degrees")));
-        assert_eq!(fov.range.as_deref(), Some("0.1..179"));
+        assert_eq!(fov.range.as_deref(), Some("> 0, <= 179.9"));
+        assert_eq!(fov.limits[1], 179.9);
         assert_eq!(fov.default.as_deref(), Some("36.0"));
         let radius = find("volume.3.radius").unwrap();
         assert_eq!(radius.only.as_deref(), Some("shape = \"sphere\""));

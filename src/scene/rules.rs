@@ -86,7 +86,7 @@ fn placement(volume: &VolumeSettings) -> Result<(), Fault> {
     let rows = matrix.map(|[x, y, z, _]| Vec3::new(x, y, z));
     let determinant = Mat3::from_cols(rows[0], rows[1], rows[2]).determinant();
     let size: f32 = rows.iter().map(|row| row.length()).product();
-    if !(determinant.abs() > 1e-6 * size) {
+    if determinant.abs() <= 1e-6 * size {
         return fault("matrix", "its first three columns flatten space; they must span it");
     }
     Ok(())
@@ -139,7 +139,7 @@ fn direction(key: &'static str, value: [f32; 3]) -> Result<(), Fault> {
 
 fn quad(half_u: [f32; 3], half_v: [f32; 3]) -> Result<(), Fault> {
     let (u, v) = (Vec3::from(half_u), Vec3::from(half_v));
-    if !(u.cross(v).length() > 1e-6 * u.length() * v.length()) {
+    if u.cross(v).length() <= 1e-6 * u.length() * v.length() {
         return fault("half_v", "half_u and half_v must point along two different edges");
     }
     Ok(())

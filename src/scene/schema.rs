@@ -144,6 +144,12 @@ impl Bounds {
             && !(self.nonzero && value == 0.0)
     }
 
+    /// The smallest and the largest number within; infinite where there is no bound.
+    pub(super) fn limits(&self) -> [f64; 2] {
+        let low = self.min.or(self.above).unwrap_or(f64::NEG_INFINITY);
+        [low, self.max.unwrap_or(f64::INFINITY)]
+    }
+
     /// The bounds in words: `0..1`, `> 0`, `not 0`; `None` if there are none.
     pub(super) fn words(&self) -> Option<String> {
         let mut words = match (self.min, self.above, self.max) {

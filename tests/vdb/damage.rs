@@ -16,6 +16,7 @@ const LAYOUT: Layout = Layout {
     half: false,
     double: false,
     components: 1,
+    code: 5,
 };
 
 fn read(bytes: Vec<u8>) -> Result<VdbFile, Error> {

@@ -15,6 +15,8 @@ pub struct Layout {
     pub half: bool,
     pub double: bool,
     pub components: usize,
+    /// With an active mask, which of the codes 0 to 5 tells the leaf's inactive values.
+    pub code: u8,
 }
 
 /// What stands outside everything else.
@@ -26,9 +28,26 @@ pub const UPPER_TILE: f64 = 4.0;
 /// The active tile at (0, 0, 16), 8 voxels a side.
 pub const LOWER_TILE: f64 = 3.0;
 
-/// The value of the leaf at the origin.
-pub fn leaf_value(offset: usize) -> f64 {
-    if leaf_active(offset) { offset as f64 * 0.5 } else { BACKGROUND }
+/// Inactive values that are neither the background nor its opposite.
+const OTHERS: [f64; 2] = [-7.0, 11.0];
+
+/// The value in the leaf at the origin.
+pub fn leaf_value(layout: &Layout, offset: usize) -> f64 {
+    let first = !leaf_selected(offset);
+    match (leaf_active(offset), layout.code) {
+        (true, _) => offset as f64 * 0.5,
+        (_, 1) => -BACKGROUND,
+        (_, 2) => OTHERS[0],
+        (_, 3) if first => -BACKGROUND,
+        (_, 4 | 5) if first => OTHERS[0],
+        (_, 5) => OTHERS[1],
+        _ => BACKGROUND,
+    }
+}
+
+/// Where two inactive values take turns, which voxels have the second one.
+fn leaf_selected(offset: usize) -> bool {
+    offset % 8 == 5
 }
 
 /// Three of four voxels are active.
@@ -105,8 +124,8 @@ impl Writer {
             self.bytes.extend([0; 12]);
             self.bytes.push(1);
         }
-        let values: Vec<f64> = (0..512).map(leaf_value).collect();
-        self.values(&values, leaf_active);
+        let values: Vec<f64> = (0..512).map(|offset| leaf_value(&layout, offset)).collect();
+        self.values(&values, leaf_active, layout.code);
     }
 
     /// An internal node whose first place is a child and another one a tile.
@@ -118,14 +137,21 @@ impl Writer {
         if self.layout.version < 222 {
             values.remove(0);
         }
-        self.values(&values, |place| place == tile_place);
+        self.values(&values, |place| place == tile_place, 0);
     }
 
-    fn values(&mut self, values: &[f64], active: impl Fn(usize) -> bool) {
+    fn values(&mut self, values: &[f64], active: impl Fn(usize) -> bool, code: u8) {
         let layout = self.layout;
         let masked = layout.version >= 222 && layout.active_mask;
         if layout.version >= 222 {
-            self.bytes.push(if masked { 0 } else { 6 });
+            self.bytes.push(if masked { code } else { 6 });
+        }
+        if masked {
+            let written = [0, 0, 1, 0, 1, 2][usize::from(code)];
+            OTHERS[..written].iter().for_each(|&value| self.value(value));
+            if code >= 3 {
+                self.mask(values.len(), leaf_selected);
+            }
         }
         let stored = values.iter().enumerate().filter(|&(place, _)| !masked || active(place));
         let stored: Vec<f64> = stored.map(|(_, &value)| value).collect();

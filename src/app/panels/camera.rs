@@ -27,7 +27,6 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
             name: "Angle of view",
             key: "camera.fov_x",
             soft: 5.0..=120.0,
-            hard: 0.1..=179.0,
             logarithmic: false,
             unit: "°",
             reset,

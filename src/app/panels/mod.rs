@@ -2,6 +2,7 @@
 
 pub mod bars;
 pub mod camera;
+pub mod emission;
 pub mod film;
 pub mod help;
 pub mod menu;

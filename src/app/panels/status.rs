@@ -8,7 +8,7 @@ use crate::app::commands::Command;
 use crate::app::engine::Engine;
 use crate::app::theme::{color, space};
 use crate::app::viewport::Viewport;
-use crate::app::widgets::count;
+use crate::app::widgets::{count, finite};
 use crate::image::tone::ToneCurve;
 use crate::render::RenderStats;
 
@@ -156,7 +156,8 @@ fn display(ui: &mut Ui, panel: &mut Panel<'_>) {
     let field = DragValue::new(&mut tone.exposure)
         .range(-20.0..=20.0)
         .speed(0.02)
-        .custom_formatter(|value, _| format!("{value:+.1}"));
+        .custom_formatter(|value, _| format!("{value:+.1}"))
+        .custom_parser(finite);
     let response = ui.add_sized([44.0, space::ROW_HEIGHT], field).accessible_name("Exposure");
     let help = "Exposure in stops, for display and PNG only. Drag, click to type, E and Shift+E \
                 for half stops, double-click for 0.";

@@ -6,8 +6,7 @@ use crate::{
     light::{Light, Point, Spot, Sun},
     math::Rgb,
     scene::settings::{
-        Extent, LightKind, LightSettings, MaterialKind, MaterialSettings, SurfaceSettings,
-        SurfaceShape,
+        LightKind, LightSettings, MaterialKind, MaterialSettings, SurfaceSettings, SurfaceShape,
     },
     surface::{Material, Quad, Shape, Sphere, Surface},
 };
@@ -34,7 +33,7 @@ fn shape(settings: &SurfaceSettings) -> Shape {
         SurfaceShape::Quad => quad(center, settings.half_u(), settings.half_v()),
         SurfaceShape::Sphere => Shape::Sphere(Sphere { center, radius: settings.radius() }),
         SurfaceShape::Box => {
-            let half_size = settings.half_size.unwrap_or(Extent::default());
+            let half_size = settings.half_size.unwrap_or_default();
             Shape::cuboid(center, Vec3A::from_array(half_size.axes()))
         }
     }

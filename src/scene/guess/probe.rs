@@ -12,8 +12,8 @@ const LINES: usize = 32;
 const SAMPLES: usize = 64;
 /// Samples along each edge of the lattice that finds what is seen.
 const LATTICE: usize = 48;
-/// The share of the largest value from which on something is seen.
-const VISIBLE: f32 = 0.02;
+/// The share of the mean from which on something is seen.
+const VISIBLE: f32 = 0.1;
 
 /// ∫ of `measure` of the grid's value along lines through `bounds` (in the file's space) in the
 /// direction of `axis`, of every line that meets anything, in ascending order.
@@ -46,8 +46,8 @@ pub(super) fn columns(
     sums
 }
 
-/// The box around what is seen of a grid: the samples that reach a fiftieth of its largest value.
-pub(super) fn visible_bounds(grid: &PlacedGrid, max: f32) -> Option<Aabb> {
+/// The box around what is seen of a grid: the samples that reach a tenth of its `mean`.
+pub(super) fn visible_bounds(grid: &PlacedGrid, mean: f32) -> Option<Aabb> {
     let bounds = grid_bounds(grid)?;
     let value = reader(grid);
     let half_cell = 0.5 * bounds.size() / LATTICE as f32;
@@ -55,7 +55,7 @@ pub(super) fn visible_bounds(grid: &PlacedGrid, max: f32) -> Option<Aabb> {
     for index in 0..LATTICE * LATTICE * LATTICE {
         let cell = [index % LATTICE, index / LATTICE % LATTICE, index / (LATTICE * LATTICE)];
         let center = bounds.min + Vec3A::from_array(cell.map(|i| (2 * i + 1) as f32)) * half_cell;
-        if value(center).max_element() > VISIBLE * max {
+        if value(center).max_element() > VISIBLE * mean {
             visible = visible.union(&Aabb::new(center - half_cell, center + half_cell));
         }
     }

@@ -9,6 +9,8 @@ pub(super) struct Candidate {
     pub(super) grid: PlacedGrid,
     /// Its largest active value; for colors of the largest channel.
     pub(super) max: f32,
+    /// The mean of its active values.
+    pub(super) mean: f32,
 }
 
 /// What glows, and how.
@@ -56,11 +58,13 @@ const KELVIN_FROM: f32 = 200.0;
 impl Candidate {
     /// `None` for grids with nothing above zero.
     pub(super) fn of(grid: PlacedGrid) -> Option<Self> {
-        let max = match &grid.values {
-            GridValues::Float(values) => values.stats().max,
-            GridValues::Vector(values) => values.stats().max.max_element(),
+        let (max, mean) = match &grid.values {
+            GridValues::Float(values) => (values.stats().max, values.stats().mean),
+            GridValues::Vector(values) => {
+                (values.stats().max.max_element(), values.stats().mean.max_element())
+            }
         };
-        (max > 0.0).then_some(Self { grid, max })
+        (max > 0.0).then_some(Self { grid, max, mean })
     }
 
     fn is_number(&self) -> bool {

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 use super::bricks::{Brick, BrickRange, Source, fill, union};
 use super::builder::{Origin, Parts, Region};
-use super::index::{Index, NODE_BRICKS, NODE_EDGE, Node};
+use super::index::{Index, NODE_BRICKS, NODE_EDGE, Node, node_of};
 use super::{SparseGrid, Voxel};
 use crate::error::{Error, Progress, Result};
 
@@ -53,13 +53,15 @@ pub(super) fn assemble<V: Voxel>(parts: Parts<V>, progress: Progress) -> Result<
 }
 
 /// Every node that may hold more than background: those with data and the seven before each,
-/// whose last samples belong to it. Sorted.
+/// whose last samples belong to it. Sorted. Nodes before the smallest coordinate hold no voxel.
 fn node_positions(regions: &HashMap<IVec3, Region>) -> Vec<IVec3> {
     let mut positions: HashSet<IVec3> = HashSet::with_capacity(2 * regions.len());
     for &position in regions.keys() {
         positions.extend((0..8).map(|corner| position - step(corner)));
     }
-    let mut positions: Vec<_> = positions.into_iter().collect();
+    let first = node_of(IVec3::MIN);
+    let mut positions: Vec<_> =
+        positions.into_iter().filter(|position| position.cmpge(first).all()).collect();
     positions.sort_unstable_by_key(IVec3::to_array);
     positions
 }

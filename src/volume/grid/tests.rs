@@ -214,6 +214,20 @@ fn voxels_at_the_ends_of_the_range_of_coordinates() {
 }
 
 #[test]
+fn a_grid_at_either_end_of_the_coordinates() {
+    for at in [i32::MIN, i32::MAX - 7] {
+        let mut builder = GridBuilder::new(0.0);
+        builder.add_tile(IVec3::splat(at), 8, 3.0, true).unwrap();
+        let grid = builder.finish(NO_PROGRESS).unwrap();
+        assert_eq!(grid.value(IVec3::splat(at)), 3.0);
+        assert_eq!(grid.value(IVec3::splat(!at)), 0.0);
+        let end = Vec3::splat(at as f32);
+        assert_eq!(grid.range(end - 500.0, end + 500.0), (0.0, 3.0));
+        assert_eq!(grid.range(-end - 500.0, -end + 500.0), (0.0, 0.0));
+    }
+}
+
+#[test]
 fn unusable_values_become_background_and_are_counted() {
     let values = [f32::NAN, 1.0, f32::INFINITY, -3.0, f32::NEG_INFINITY, f32::MAX];
     let grid = SparseGrid::from_dense(IVec3::ZERO, UVec3::new(6, 1, 1), &values, 0.5).unwrap();

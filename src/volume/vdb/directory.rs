@@ -1,6 +1,7 @@
 //! What a file holds, known without reading its voxels.
 
 use std::borrow::Cow;
+use std::fmt;
 use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
@@ -15,7 +16,6 @@ use crate::error::{Error, Progress, Result};
 use crate::volume::grid::{SparseGrid, Voxel};
 
 /// A file's list of grids, from which single ones can be loaded.
-#[derive(Debug)]
 pub struct Directory {
     file: String,
     bytes: Cow<'static, [u8]>,
@@ -129,6 +129,17 @@ impl Directory {
                 "shares the voxels of a grid that is not in the file or cannot be loaded".into(),
             )),
         }
+    }
+}
+
+impl fmt::Debug for Directory {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Directory")
+            .field("file", &self.file)
+            .field("version", &self.version)
+            .field("metadata", &self.metadata)
+            .field("grids", &self.grids)
+            .finish_non_exhaustive()
     }
 }
 

@@ -1,0 +1,80 @@
+//! Carries out commands.
+
+use egui::Context;
+use glam::UVec2;
+
+use super::App;
+use crate::app::commands::Command;
+use crate::app::files::Purpose;
+use crate::app::panels::strategy;
+use crate::image::tone::ToneCurve;
+use crate::scene;
+
+impl App {
+    /// Carries out one command.
+    pub(super) fn execute(&mut self, ctx: &Context, command: Command) {
+        match command {
+            Command::Open => self.ask(ctx, Purpose::Open),
+            Command::OpenPath => self.ask_typed(Purpose::Open),
+            Command::SaveExr => self.ask(ctx, Purpose::SaveExr),
+            Command::SavePng => self.ask(ctx, Purpose::SavePng),
+            Command::SaveScene => self.ask(ctx, Purpose::SaveScene),
+            Command::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
+            Command::Undo => self.editor.undo(),
+            Command::Redo => self.editor.redo(),
+            Command::PauseResume => self.engine.set_paused(!self.engine.paused()),
+            Command::Restart => self.engine.restart(),
+            Command::FrameVolume => self.frame_volume(),
+            Command::FitPicture => self.viewport.zoom = Default::default(),
+            Command::ZoomToPixels => {
+                let size = self.engine.picture().map(|picture| picture.size);
+                self.viewport.toggle_pixel_zoom(size);
+            }
+            Command::FoldPanels => self.folded = !self.folded,
+            Command::Shortcuts => self.help = !self.help,
+            _ => self.edit(command),
+        }
+        ctx.request_repaint();
+    }
+
+    /// Commands that change the document.
+    fn edit(&mut self, command: Command) {
+        let document = &mut self.editor.document;
+        let name = match command {
+            Command::ExposureUp => {
+                document.tone.exposure += 0.5;
+                "exposure"
+            }
+            Command::ExposureDown => {
+                document.tone.exposure -= 0.5;
+                "exposure"
+            }
+            Command::NextToneCurve => {
+                document.tone.curve = match document.tone.curve {
+                    ToneCurve::Linear => ToneCurve::Filmic,
+                    ToneCurve::Filmic => ToneCurve::Linear,
+                };
+                "tone curve"
+            }
+            other => {
+                let Some(toggle) = strategy::toggle_of(other) else { return };
+                let switch = strategy::switch(&mut document.settings.strategy, toggle);
+                *switch = !*switch;
+                other.text()
+            }
+        };
+        self.editor.name_edit(name);
+    }
+
+    /// Moves the camera so that everything finite that fills space is in the picture.
+    fn frame_volume(&mut self) {
+        let Some(built) = self.engine.built() else { return };
+        let bounds = built.scene.world.instances().iter().map(|instance| *instance.bounds());
+        let bounds = bounds.filter(|bounds| bounds.size().is_finite());
+        let Some(bounds) = bounds.reduce(|all, bounds| all.union(&bounds)) else { return };
+        let size = self.film_size().unwrap_or(UVec2::ONE).as_vec2();
+        let camera = &mut self.editor.document.settings.camera;
+        *camera = scene::frame(camera, &bounds, size.x / size.y);
+        self.editor.name_edit("frame the volume");
+    }
+}

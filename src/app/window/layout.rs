@@ -1,0 +1,102 @@
+//! What is where: bars, the panel column, the picture with what comes and goes at its edges.
+
+use std::path::PathBuf;
+
+use egui::{Frame, Margin, ScrollArea, Ui};
+use glam::UVec2;
+
+use super::App;
+use crate::app::commands::Command;
+use crate::app::files::typed;
+use crate::app::panels::bars::{self, Typed};
+use crate::app::panels::{self, Panel};
+use crate::app::theme::{self, color, space};
+
+impl App {
+    /// Shows everything and gathers the commands that it is asked for.
+    pub(super) fn layout(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        let title = self.title();
+        let grids = self.engine.grids().clone();
+        let mut panel =
+            Panel { editor: &mut self.editor, grids: &grids, notes: &self.notes, commands };
+        let bar = Frame::new().fill(color::PANEL).inner_margin(Margin::symmetric(8, 3));
+        egui::Panel::top("menu").frame(bar).show(ui, |ui| {
+            panels::menu::show(ui, &mut panel, &title);
+        });
+        let bar = Frame::new().fill(color::PANEL).inner_margin(Margin::symmetric(8, 0));
+        egui::Panel::bottom("status").exact_size(space::STATUS).frame(bar).show(ui, |ui| {
+            panels::status::show(ui, &mut panel, &self.engine, &self.viewport);
+        });
+        if !self.folded {
+            let film = self.viewport.film_size();
+            column(ui, &mut panel, film, self.largest);
+        }
+        egui::CentralPanel::no_frame().show(ui, |ui| self.picture_area(ui));
+        panels::help::show(ui.ctx(), &mut self.help);
+    }
+
+    /// The picture with the bars that come and go at its edges. The film takes the whole area, so
+    /// that a bar never restarts the render.
+    fn picture_area(&mut self, ui: &mut Ui) {
+        let area = ui.available_size() * ui.pixels_per_point();
+        let area = UVec2::new(area.x.round() as u32, area.y.round() as u32);
+        if let Some(wait) = self.viewport.resize(area, self.largest) {
+            ui.ctx().request_repaint_after(wait);
+        }
+        self.path_bar_row(ui);
+        self.progress_row(ui);
+        if !self.notices.list().is_empty() {
+            egui::Panel::bottom("notices")
+                .frame(theme::panel_frame())
+                .show(ui, |ui| self.notices.show(ui));
+        }
+        let picture = self.engine.picture().cloned();
+        egui::CentralPanel::no_frame().show(ui, |ui| {
+            self.viewport.show(ui, &mut self.editor, picture.as_ref());
+        });
+    }
+
+    fn path_bar_row(&mut self, ui: &mut Ui) {
+        let Some(bar) = &mut self.path_bar else { return };
+        let purpose = bar.purpose;
+        let frame = theme::panel_frame();
+        let typing = egui::Panel::top("path").frame(frame).show(ui, |ui| bar.show(ui)).inner;
+        match typing {
+            Typed::Pending => {}
+            Typed::Cancelled => self.path_bar = None,
+            Typed::Done(text) => {
+                self.path_bar = None;
+                self.take_path(ui.ctx(), purpose, PathBuf::from(typed(&text)));
+            }
+        }
+    }
+
+    fn progress_row(&mut self, ui: &mut Ui) {
+        let Some(fraction) = self.engine.progress() else { return };
+        let what = match self.engine.opening() {
+            Some(source) => format!("Loading {source}"),
+            None => "Building the scene".to_owned(),
+        };
+        let frame = theme::panel_frame();
+        let row = egui::Panel::bottom("progress").frame(frame);
+        if row.show(ui, |ui| bars::progress(ui, &what, fraction)).inner {
+            self.engine.cancel();
+        }
+    }
+}
+
+/// The column of panels.
+fn column(ui: &mut Ui, panel: &mut Panel<'_>, film: Option<UVec2>, largest: u32) {
+    let frame = Frame::new().fill(color::PANEL);
+    egui::Panel::right("column").exact_size(space::COLUMN).frame(frame).show(ui, |ui| {
+        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+            let inner = Frame::new().inner_margin(Margin::same(space::PANEL));
+            inner.show(ui, |ui| {
+                panels::strategy::show(ui, panel);
+                panels::volume::show(ui, panel);
+                panels::camera::show(ui, panel);
+                panels::film::show(ui, panel, film, largest);
+            });
+        });
+    });
+}

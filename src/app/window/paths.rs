@@ -1,0 +1,88 @@
+//! Files that the window opens and saves.
+
+use std::path::{Path, PathBuf};
+
+use egui::Context;
+
+use super::App;
+use crate::app::files::{Dialog, Dialogs, Purpose};
+use crate::app::panels::bars::PathBar;
+use crate::app::saver::Content;
+
+impl App {
+    /// Opens a path or `builtin:NAME`.
+    pub(super) fn open(&mut self, source: &str) {
+        self.path_bar = None;
+        self.engine.open(source);
+    }
+
+    /// Does with a chosen path what it was asked for.
+    pub(super) fn take_path(&mut self, ctx: &Context, purpose: Purpose, path: PathBuf) {
+        if purpose == Purpose::Open {
+            self.open(&path.to_string_lossy());
+            return;
+        }
+        let Some(content) = self.content(purpose) else {
+            self.notices.failed("There is no picture to save yet.");
+            return;
+        };
+        let wake = ctx.clone();
+        let path = purpose.complete(path);
+        if let Err(error) = self.saver.start(path, content, move || wake.request_repaint()) {
+            self.notices.failed(error.to_string());
+        }
+    }
+
+    /// What saving writes at this moment; `None` where there is nothing yet.
+    fn content(&self, purpose: Purpose) -> Option<Content> {
+        let document = &self.editor.document;
+        let settings = self.engine.rendered()?;
+        match purpose {
+            Purpose::Open => None,
+            Purpose::SaveExr => Some(Content::Exr {
+                film: self.engine.session().snapshot(),
+                settings: settings.clone(),
+                seconds: self.engine.picture().map_or(0.0, |picture| picture.stats.seconds),
+            }),
+            Purpose::SavePng => {
+                Some(Content::Png { film: self.engine.session().snapshot(), tone: document.tone })
+            }
+            Purpose::SaveScene => {
+                // A film of the window's size is written as that size, so the picture is the same.
+                let mut saved = document.settings.clone();
+                saved.film.size = settings.film.size;
+                Some(Content::Scene(saved))
+            }
+        }
+    }
+
+    /// Asks for a path in the way that the options say.
+    pub(super) fn ask(&mut self, ctx: &Context, purpose: Purpose) {
+        if self.dialogs == Dialogs::Typed {
+            self.ask_typed(purpose);
+        } else if self.dialog.is_none() {
+            let wake = ctx.clone();
+            match Dialog::open(purpose, &self.suggested(purpose), move || wake.request_repaint()) {
+                Ok(dialog) => self.dialog = Some(dialog),
+                Err(_) => self.ask_typed(purpose),
+            }
+        }
+    }
+
+    /// Shows the bar to type a path in.
+    pub(super) fn ask_typed(&mut self, purpose: Purpose) {
+        let text = match purpose {
+            Purpose::Open => String::new(),
+            _ => self.suggested(purpose).to_string_lossy().into_owned(),
+        };
+        self.path_bar = Some(PathBar::new(purpose, text));
+    }
+
+    /// A file beside what is open, or in the present folder.
+    fn suggested(&self, purpose: Purpose) -> PathBuf {
+        let here = std::env::current_dir().unwrap_or_default();
+        let name = Path::new(&self.title()).with_extension(purpose.extension().unwrap_or_default());
+        let folder = Path::new(&self.source).parent().filter(|folder| folder.is_dir());
+        folder.map_or_else(|| here.clone(), |folder| here.join(folder)).join(name)
+    }
+}
