@@ -112,6 +112,11 @@ impl Engine {
         }
     }
 
+    /// Whether an edit is being built, which starts another film.
+    pub fn is_building(&self) -> bool {
+        self.building.is_some()
+    }
+
     /// What is being opened.
     pub fn opening(&self) -> Option<&str> {
         self.opening.as_ref().map(|(source, _)| source.as_str())

@@ -4,7 +4,7 @@ mod execute;
 mod layout;
 mod paths;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use egui::{Context, Ui};
@@ -13,7 +13,7 @@ use glam::UVec2;
 use super::commands::Command;
 use super::display;
 use super::engine::{Engine, News};
-use super::files::{Answer, Dialog, Dialogs};
+use super::files::{Answer, Dialog, Dialogs, Purpose};
 use super::frame_stats::FrameStats;
 use super::notices::{Level, Notices};
 use super::panels::bars::PathBar;
@@ -45,6 +45,8 @@ pub struct App {
     dialogs: Dialogs,
     dialog: Option<Dialog>,
     path_bar: Option<PathBar>,
+    /// What is to be saved once the scene is built.
+    waiting: Vec<(Purpose, PathBuf)>,
     /// What is open, as the user named it.
     source: String,
     /// What was guessed when it was opened.
@@ -77,6 +79,7 @@ impl App {
             dialogs: options.dialogs,
             dialog: None,
             path_bar: None,
+            waiting: Vec::new(),
             source,
             notes: Vec::new(),
             folded: false,
@@ -110,6 +113,7 @@ impl App {
         let news = self.engine.poll();
         self.take_in(&ctx, news);
         self.take_in_arrivals(&ctx);
+        self.save_waiting(&ctx);
         self.editor.begin_frame(&ctx);
         let mut commands = Command::pressed(&ctx);
         self.layout(ui, &mut commands);

@@ -1,5 +1,7 @@
 //! Bars that come and go at the edges of the picture: work in progress, and a path to type.
 
+use std::path::PathBuf;
+
 use egui::{Button, Key, ProgressBar, RichText, TextEdit, Ui};
 
 use crate::app::files::Purpose;
@@ -19,6 +21,11 @@ pub fn progress(ui: &mut Ui, what: &str, fraction: f32) -> bool {
     .inner
 }
 
+/// Shows that the file above the window can be dropped.
+pub fn drop_hint(ui: &mut Ui, name: &str) {
+    ui.label(RichText::new(format!("Drop to open {name}")).color(color::ACCENT));
+}
+
 /// A path being typed.
 #[derive(Debug)]
 pub struct PathBar {
@@ -27,6 +34,8 @@ pub struct PathBar {
     /// What is typed so far.
     pub text: String,
     fresh: bool,
+    /// Whether the user was told that the file exists and will be replaced.
+    warned: bool,
 }
 
 /// What became of a path being typed.
@@ -42,11 +51,32 @@ pub enum Typed {
 impl PathBar {
     /// A bar that starts with `text`.
     pub fn new(purpose: Purpose, text: String) -> Self {
-        Self { purpose, text, fresh: true }
+        Self { purpose, text, fresh: true, warned: false }
     }
 
-    /// Shows the bar.
+    /// Shows the bar. A file that would be replaced has to be confirmed twice.
     pub fn show(&mut self, ui: &mut Ui) -> Typed {
+        let typed = self.line(ui);
+        if self.warned {
+            let text = RichText::new("This file exists. Save again to replace it.");
+            ui.label(text.color(color::WARNING));
+        }
+        match typed {
+            Typed::Done(text) if !self.warned && self.replaces(&text) => {
+                self.warned = true;
+                self.fresh = true;
+                Typed::Pending
+            }
+            typed => typed,
+        }
+    }
+
+    fn replaces(&self, text: &str) -> bool {
+        let path = PathBuf::from(crate::app::files::typed(text));
+        self.purpose != Purpose::Open && self.purpose.complete(path).exists()
+    }
+
+    fn line(&mut self, ui: &mut Ui) -> Typed {
         let (label, hint, confirm) = match self.purpose {
             Purpose::Open => ("Open", "path of a .toml or .vdb, or builtin:NAME", "Open"),
             Purpose::SaveExr => ("Save EXR as", "path of the .exr", "Save"),
@@ -58,6 +88,7 @@ impl PathBar {
             let width = (ui.available_width() - 150.0).max(80.0);
             let edit = TextEdit::singleline(&mut self.text).hint_text(hint).desired_width(width);
             let field = ui.add(edit).accessible_name("Path");
+            self.warned &= !field.changed();
             if std::mem::take(&mut self.fresh) {
                 field.request_focus();
             }

@@ -28,7 +28,10 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>, engine: &Engine, viewport: &View
         match engine.picture() {
             Some(picture) => progress(ui, &picture.stats, engine),
             None => {
-                ui.weak("Waiting for the first picture …");
+                let opening = engine.opening().is_some() || engine.built().is_some();
+                let text =
+                    if opening { "Waiting for the first picture …" } else { "Nothing is open." };
+                ui.weak(text);
             }
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {

@@ -44,6 +44,7 @@ impl App {
             ui.ctx().request_repaint_after(wait);
         }
         self.path_bar_row(ui);
+        drop_row(ui);
         self.progress_row(ui);
         if !self.notices.list().is_empty() {
             egui::Panel::bottom("notices")
@@ -83,6 +84,15 @@ impl App {
             self.engine.cancel();
         }
     }
+}
+
+/// Says what a file that hovers above the window would do.
+fn drop_row(ui: &mut Ui) {
+    let hovered = ui.input(|input| input.raw.hovered_files.last().cloned());
+    let Some(path) = hovered.and_then(|file| file.path) else { return };
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let frame = theme::panel_frame();
+    egui::Panel::bottom("drop").frame(frame).show(ui, |ui| bars::drop_hint(ui, &name));
 }
 
 /// The column of panels.

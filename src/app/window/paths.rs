@@ -20,8 +20,24 @@ impl App {
     pub(super) fn take_path(&mut self, ctx: &Context, purpose: Purpose, path: PathBuf) {
         if purpose == Purpose::Open {
             self.open(&path.to_string_lossy());
-            return;
+        } else if self.engine.is_building() {
+            // The film is about to become that of another scene.
+            self.waiting.push((purpose, path));
+        } else {
+            self.save(ctx, purpose, path);
         }
+    }
+
+    /// Saves what waited for a build to end.
+    pub(super) fn save_waiting(&mut self, ctx: &Context) {
+        if !self.engine.is_building() {
+            for (purpose, path) in std::mem::take(&mut self.waiting) {
+                self.save(ctx, purpose, path);
+            }
+        }
+    }
+
+    fn save(&mut self, ctx: &Context, purpose: Purpose, path: PathBuf) {
         let Some(content) = self.content(purpose) else {
             self.notices.failed("There is no picture to save yet.");
             return;
