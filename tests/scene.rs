@@ -153,6 +153,7 @@ const MALFORMED: &[(&str, &[&str])] = &[
     ("[camera]\nposition = [0, 0, 0]", &["camera.target:", "same point"]),
     ("[camera]\nup = [0, 3, 0]", &["camera.up:", "along the view"]),
     ("[film]\nspp = 1.5", &["film.spp:", "expected integer"]),
+    ("[film]\nspp = 4294967296", &["film.spp:", "4294967296 is out of range", "0..4294967295"]),
     ("[film]\nsize = [0, 9]", &["film.size.0:", "1..16384"]),
     ("[film]\nseed = -1", &["film.seed:", "out of range"]),
     ("[environment]\nradiance = -1", &["environment.radiance:", ">= 0"]),
@@ -387,7 +388,7 @@ fn any_settings(rng: &mut impl Rng, home: &Path) -> Settings {
     settings.camera.position = vector(rng);
     settings.camera.fov_x = rng.random_range(0.1..=179.0);
     settings.film.size = [rng.random_range(1..16384), rng.random_range(1..16384)];
-    settings.film.seed = rng.random_range(0..i64::MAX as u64);
+    settings.film.seed = rng.random_range(0..1 << 53);
     settings.film.spp = rng.random();
     settings.path.max_scatters = rng.random_range(0..=100_000);
     settings.environment.radiance = color(rng);

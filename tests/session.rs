@@ -361,7 +361,7 @@ fn a_drag_shows_pictures_on_the_way() {
     let (session, published) = session();
     let shown = Arc::new(AtomicU32::new(0));
     for generation in 1..60 {
-        let slow = Shade::build(0.1, None, None, Duration::from_micros(500));
+        let slow = Shade::build(0.1, None, None, Duration::from_millis(2));
         session.start(request(&slow, 0, generation));
         std::thread::sleep(Duration::from_millis(8));
         if published.try_iter().count() > 0 {

@@ -111,8 +111,8 @@ impl Checker<'_> {
         };
         let bounds = bounds.or(Bounds::of(chosen));
         match value {
-            Value::Integer(number) => self.number(*number as f64, path, bounds),
-            Value::Float(number) => self.number(*number, path, bounds),
+            Value::Integer(number) => self.integer(*number, path, bounds),
+            Value::Float(number) => self.float(*number, path, bounds),
             Value::String(name) => self.name(name, schema, path),
             Value::Array(items) => self.array(items, chosen, schema, path, bounds),
             Value::Table(table) => self.table(table, chosen, path),
@@ -130,13 +130,27 @@ impl Checker<'_> {
         self.invalid(path, format!("expected {}, found {found}", schema::label(schema)))
     }
 
-    fn number(&self, number: f64, path: &str, bounds: Bounds) -> Result<()> {
-        if !(number as f32).is_finite() {
+    fn integer(&self, number: i64, path: &str, bounds: Bounds) -> Result<()> {
+        self.within(bounds.contain_integer(number), number, path, bounds)
+    }
+
+    fn float(&self, number: f64, path: &str, bounds: Bounds) -> Result<()> {
+        let held = number as f32;
+        if !held.is_finite() {
             return Err(self.invalid(path, format!("{number} is not a finite number")));
         }
+        self.within(bounds.contain(held), held, path, bounds)
+    }
+
+    fn within(
+        &self,
+        is_within: bool,
+        number: impl std::fmt::Display,
+        path: &str,
+        bounds: Bounds,
+    ) -> Result<()> {
         match bounds.words() {
-            Some(words) if !bounds.contain(number) => {
-                let number = number as f32;
+            Some(words) if !is_within => {
                 Err(self.invalid(path, format!("{number} is out of range; the range is {words}")))
             }
             _ => Ok(()),

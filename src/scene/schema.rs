@@ -134,13 +134,21 @@ impl Bounds {
         }
     }
 
-    /// Whether `value` lies within, as precisely as the settings hold it: 0.999 in 32 bits is not
+    /// Whether a whole number lies within.
+    pub(super) fn contain_integer(&self, value: i64) -> bool {
+        self.contain_by(value as f64, |bound| bound)
+    }
+
+    /// Whether a number lies within, as precisely as the settings hold it: 0.999 in 32 bits is not
     /// above a bound of 0.999.
-    pub(super) fn contain(&self, value: f64) -> bool {
-        let single = value as f32;
-        self.min.is_none_or(|min| single >= min as f32)
-            && self.above.is_none_or(|above| single > above as f32)
-            && self.max.is_none_or(|max| single <= max as f32)
+    pub(super) fn contain(&self, value: f32) -> bool {
+        self.contain_by(value.into(), |bound| f64::from(bound as f32))
+    }
+
+    fn contain_by(&self, value: f64, held: impl Fn(f64) -> f64) -> bool {
+        self.min.is_none_or(|min| value >= held(min))
+            && self.above.is_none_or(|above| value > held(above))
+            && self.max.is_none_or(|max| value <= held(max))
             && !(self.nonzero && value == 0.0)
     }
 

@@ -19,6 +19,7 @@ use super::{
 use crate::{
     math::{PathRng, Ray, Rgb, mean},
     surface::{self, Bsdf, Intersection, Material},
+    volume::world::MediumRay,
 };
 
 /// Most scattering events and reflections of any path. A path that gets here is counted.
@@ -63,14 +64,14 @@ impl Path<'_> {
         let t_max = end.map_or(f32::INFINITY, |end| end.hit.t);
         observer.step(Step::Ray { ray: &self.ray, t_max, throughput: self.throughput });
 
+        let medium = scene.world.along(self.ray, t_max);
         let coverage = scene
             .strategy
             .emission_ratio_tracking
-            .then(|| self.gather_by_ratio_tracking(end.as_ref(), t_max, rng, observer));
+            .then(|| self.gather_by_ratio_tracking(medium.clone(), end.as_ref(), rng, observer));
         if coverage.is_some() && self.is_last_ray() {
             return false;
         }
-        let medium = scene.world.along(self.ray, t_max);
         let flight = tracking::scatter(medium, &scene.strategy, self.throughput, rng);
         self.sample.tracking_steps += flight.collisions;
         self.gather_emission(flight.emission, observer);
@@ -106,12 +107,11 @@ impl Path<'_> {
     /// returned.
     fn gather_by_ratio_tracking(
         &mut self,
+        medium: MediumRay,
         end: Option<&Intersection>,
-        t_max: f32,
         rng: &mut PathRng,
         observer: &mut impl Observer,
     ) -> Rgb {
-        let medium = self.scene.world.along(self.ray, t_max);
         let glow = tracking::emission(medium, &self.scene.strategy, rng);
         self.sample.tracking_steps += glow.collisions;
         self.gather_emission(glow.emission, observer);

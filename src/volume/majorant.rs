@@ -128,7 +128,7 @@ impl MajorantGrid {
 }
 
 /// The way of one ray through the cells of a [`MajorantGrid`] (Amanatides and Woo 1987).
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct CellWalk {
     t: f32,
     t_end: f32,

@@ -15,6 +15,9 @@ use super::{
 };
 use crate::math::{Aabb, Bvh, Ray};
 
+/// Up to this many volumes are tried one by one, which costs less than a hierarchy.
+const FEW: usize = 3;
+
 /// A volume placed in the world.
 #[derive(Clone, Debug)]
 pub struct Instance {
@@ -111,10 +114,14 @@ impl World {
             }
         };
         self.unbounded.iter().for_each(|&index| enter(index));
-        self.bounded.visit(&ray, t_max, |item, t_max| {
-            enter(self.bounded_indices[item as usize]);
-            t_max
-        });
+        if self.bounded_indices.len() <= FEW {
+            self.bounded_indices.iter().for_each(|&index| enter(index));
+        } else {
+            self.bounded.visit(&ray, t_max, |item, t_max| {
+                enter(self.bounded_indices[item as usize]);
+                t_max
+            });
+        }
         // Nearest last, so that entering pops; ties keep the order of the scene file.
         if medium.ahead.len() > 1 {
             medium.ahead.sort_by(|a, b| b.t0.total_cmp(&a.t0));
@@ -139,6 +146,17 @@ impl<'w> MediumRay<'w> {
     /// The next stretch of the ray with something in it.
     #[inline]
     pub fn next_segment(&mut self) -> Option<Segment> {
+        if self.fresh
+            && self.ahead.is_empty()
+            && let [only] = self.inside.as_mut_slice()
+        {
+            // Nothing to merge: the volume's own stretches are the segments.
+            return only.advance().then(|| only.segment());
+        }
+        self.next_merged()
+    }
+
+    fn next_merged(&mut self) -> Option<Segment> {
         loop {
             if self.fresh {
                 self.leave_stretch();
@@ -226,7 +244,7 @@ impl<'w> MediumRay<'w> {
 }
 
 /// One volume's way along the ray: the stretch it is in or comes to next.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 struct Cursor<'w> {
     instance: &'w Instance,
     /// The ray in the volume's space; its parameter is still the world's.
@@ -272,6 +290,17 @@ impl<'w> Cursor<'w> {
                 true
             }
             None => false,
+        }
+    }
+
+    fn segment(&self) -> Segment {
+        Segment {
+            t0: self.t0,
+            t1: self.t1,
+            majorant: self.majorant.mu_t,
+            emission_rate: self.majorant.emission * self.instance.emission_rate,
+            voxel_rate: self.instance.voxel_rate,
+            uniform: self.cells.is_none(),
         }
     }
 

@@ -13,7 +13,7 @@ pub struct FilmSettings {
     #[schemars(extend("unit" = "pixels", "minimum" = 1, "maximum" = 16384))]
     pub size: [u32; 2],
     /// Another seed gives the same picture with other noise.
-    #[schemars(range(min = 0, max = 9_223_372_036_854_775_807_i64))]
+    #[schemars(range(min = 0, max = 9_007_199_254_740_991_i64))]
     pub seed: u64,
     /// Samples per pixel after which the picture is finished; 0 goes on until stopped.
     #[schemars(extend("unit" = "samples"), range(min = 0, max = 4_294_967_295_u32))]
