@@ -1,6 +1,6 @@
 //! The menu bar: every command that has no better place, and the name of the scene.
 
-use egui::{Button, MenuBar, RichText, Ui};
+use egui::{Button, MenuBar, RectAlign, RichText, Tooltip, Ui};
 
 use super::Panel;
 use crate::app::commands::Command;
@@ -64,7 +64,12 @@ fn edit_menu(ui: &mut Ui, panel: &mut Panel<'_>) {
 fn item(ui: &mut Ui, panel: &mut Panel<'_>, command: Command, text: &str, enabled: bool) {
     let key = RichText::new(ui.ctx().format_shortcut(&command.shortcut())).color(color::TEXT_DIM);
     let button = Button::new(text).shortcut_text(key).min_size(egui::vec2(190.0, 0.0));
-    if ui.add_enabled(enabled, button).on_hover_text(command.tooltip()).clicked() {
+    let response = ui.add_enabled(enabled, button);
+    // Beside the item, so that it does not hide the next one.
+    let mut tooltip = Tooltip::for_enabled(&response);
+    tooltip.popup = tooltip.popup.align(RectAlign::RIGHT);
+    tooltip.show(|ui| ui.label(command.tooltip()));
+    if response.clicked() {
         panel.commands.push(command);
         ui.close();
     }
