@@ -32,7 +32,7 @@ pub enum News {
     Failed(String),
     /// An edit could not be built.
     Refused(String),
-    /// The settings were built.
+    /// The settings are built.
     Accepted,
     /// A render was started or asked for; the number is its generation.
     Started(u64),
@@ -46,6 +46,8 @@ pub struct Engine {
     grids: Arc<Grids>,
     opening: Option<(String, Instant)>,
     building: Option<(Settings, Instant)>,
+    /// The number of the latest request to the loader.
+    request: u64,
     /// Settings that could not be built, so that they are not tried again in every frame.
     refused: Option<Settings>,
     started: Option<Started>,
@@ -87,6 +89,7 @@ impl Engine {
             grids: Arc::default(),
             opening: None,
             building: None,
+            request: 0,
             refused: None,
             started: None,
             generation: 0,
@@ -100,7 +103,7 @@ impl Engine {
     pub fn open(&mut self, source: &str) {
         self.building = None;
         self.opening = Some((source.to_owned(), Instant::now()));
-        self.loader.request(Job::Open(source.to_owned()), None);
+        self.request = self.loader.request(Job::Open(source.to_owned()), None);
     }
 
     /// Stops opening or building.
@@ -201,9 +204,12 @@ impl Engine {
     }
 
     fn take_in(&mut self, outcome: Outcome, news: &mut Vec<News>) {
-        self.building = None;
-        if let Job::Open(_) = &outcome.job {
+        if outcome.number == self.request {
+            self.building = None;
             self.opening = None;
+        } else if let Job::Open(_) = &outcome.job {
+            // It was done just before another request; nobody waits for it any more.
+            return;
         }
         match (outcome.job, outcome.result) {
             (_, Err(Error::Cancelled)) => {}
@@ -275,8 +281,13 @@ impl Engine {
     ) -> Option<Duration> {
         let fresh = |other: &Settings| same_scene(other, settings);
         let built = self.built.as_ref()?;
-        let done = fresh(&built.settings) || self.refused.as_ref().is_some_and(fresh);
-        if done || self.opening.is_some() {
+        if fresh(&built.settings) {
+            if self.refused.take().is_some() {
+                news.push(News::Accepted);
+            }
+            return None;
+        }
+        if self.opening.is_some() || self.refused.as_ref().is_some_and(fresh) {
             return None;
         }
         if let Some((asked, since)) = &self.building
@@ -286,7 +297,7 @@ impl Engine {
         }
         self.building = Some((settings.clone(), Instant::now()));
         let start = self.next_start(size, news);
-        self.loader.request(Job::Build(settings.clone()), Some(start));
+        self.request = self.loader.request(Job::Build(settings.clone()), Some(start));
         None
     }
 }

@@ -44,6 +44,8 @@ pub struct Start {
 
 /// What came of a job.
 pub struct Outcome {
+    /// The number of the request, as [`Loader::request`] gave it.
+    pub number: u64,
     /// The job.
     pub job: Job,
     /// The settings and the scene built from them.
@@ -115,11 +117,13 @@ impl Loader {
         Ok(Self { shared, reports, thread: Some(thread) })
     }
 
-    /// Asks for `job`, and to `start` a render of what it builds; cancels any other.
-    pub fn request(&self, job: Job, start: Option<Start>) {
+    /// Asks for `job`, and to `start` a render of what it builds; cancels any other. Gives the
+    /// number of the request.
+    pub fn request(&self, job: Job, start: Option<Start>) -> u64 {
         let number = self.shared.latest.fetch_add(1, Ordering::Relaxed) + 1;
         self.shared.desk().next = Some(Ticket { number, job, start });
         self.shared.wake.notify_all();
+        number
     }
 
     /// Cancels what is at work or waiting.
@@ -219,7 +223,7 @@ fn work(
             Err(_) => false,
         });
         // The receiver lives as long as this thread: the loader joins it.
-        let _ = reports.send(Report::Ended(Box::new(Outcome { job, result, started })));
+        let _ = reports.send(Report::Ended(Box::new(Outcome { number, job, result, started })));
         on_news();
         let Some(settings) = settings else { continue };
         let still_latest = |_: f32| is_latest();
