@@ -186,7 +186,7 @@ impl Engine {
         let mut news = Vec::new();
         while let Some(report) = self.loader.poll() {
             match report {
-                Report::Ended(outcome) => self.take_in(outcome, &mut news),
+                Report::Ended(outcome) => self.take_in(*outcome, &mut news),
                 Report::Grids(grids) => self.grids = grids,
             }
         }

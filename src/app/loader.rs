@@ -28,7 +28,7 @@ pub enum Job {
 /// What the loader has to say.
 pub enum Report {
     /// A job has ended.
-    Ended(Outcome),
+    Ended(Box<Outcome>),
     /// The grids of all files seen so far.
     Grids(Arc<Grids>),
 }
@@ -219,7 +219,7 @@ fn work(
             Err(_) => false,
         });
         // The receiver lives as long as this thread: the loader joins it.
-        let _ = reports.send(Report::Ended(Outcome { job, result, started }));
+        let _ = reports.send(Report::Ended(Box::new(Outcome { job, result, started })));
         on_news();
         let Some(settings) = settings else { continue };
         let still_latest = |_: f32| is_latest();
@@ -274,7 +274,7 @@ mod tests {
         let start = Instant::now();
         loop {
             if let Some(Report::Ended(outcome)) = loader.poll() {
-                return outcome;
+                return *outcome;
             }
             assert!(start.elapsed() < Duration::from_secs(60), "no outcome");
             std::thread::sleep(Duration::from_millis(1));
