@@ -278,7 +278,7 @@ mod tests {
         let start = Instant::now();
         loop {
             if let Some(Report::Ended(outcome)) = loader.poll() {
-                return outcome;
+                return *outcome;
             }
             assert!(start.elapsed() < Duration::from_secs(60), "no outcome");
             std::thread::sleep(Duration::from_millis(1));

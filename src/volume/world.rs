@@ -265,8 +265,15 @@ impl<'w> Cursor<'w> {
         let (t0, t1) = instance.volume.region().intersect(&local, t_max)?;
         match instance.volume.bounds() {
             Bounds::Uniform(_, majorant) => {
-                let empty = majorant.is_zero();
-                (!empty).then(|| Self { instance, local, t0, t1, majorant: *majorant, cells: None })
+                let majorant = *majorant;
+                (!majorant.is_zero()).then_some(Self {
+                    instance,
+                    local,
+                    t0,
+                    t1,
+                    majorant,
+                    cells: None,
+                })
             }
             Bounds::Cells(grid) => {
                 let cells = Some(grid.walk(&local, t0, t1));
