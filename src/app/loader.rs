@@ -274,7 +274,7 @@ mod tests {
         Loader::new(Arc::new(Session::new(Some(1), || ()).unwrap()), || ()).unwrap()
     }
 
-    fn wait(loader: &Loader) -> Box<Outcome> {
+    fn wait(loader: &Loader) -> Outcome {
         let start = Instant::now();
         loop {
             if let Some(Report::Ended(outcome)) = loader.poll() {
