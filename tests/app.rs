@@ -49,6 +49,7 @@ impl Window {
             source: Some(path.to_str().unwrap().to_owned()),
             threads: Some(1),
             dialogs: Dialogs::Typed,
+            cleared: false,
         };
         let renderer = WgpuTestRenderer::from_render_state(state.clone());
         let harness = Harness::builder().with_size([900.0, 600.0]).renderer(renderer);

@@ -51,6 +51,10 @@ impl eframe::App for Window {
         self.app.close();
     }
 
+    fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {
+        theme::color::PANEL.to_normalized_gamma_f32()
+    }
+
     fn persist_egui_memory(&self) -> bool {
         false
     }
@@ -77,7 +81,7 @@ pub fn run(source: Option<String>) -> Result<()> {
     };
     let create: eframe::AppCreator<'_> = Box::new(|creation| {
         let state = creation.wgpu_render_state.as_ref().ok_or("there is no graphics adapter")?;
-        let options = Options { source, ..Options::default() };
+        let options = Options { source, cleared: true, ..Options::default() };
         Ok(Box::new(Window { app: App::new(&creation.egui_ctx, state, options)? }))
     });
     eframe::run_native("flambeau", options, create).map_err(|error| no_window(&error))

@@ -33,6 +33,8 @@ pub struct Options {
     pub threads: Option<usize>,
     /// How paths are asked for.
     pub dialogs: Dialogs,
+    /// Whether each frame begins in the color of the panels, so that they need not be painted.
+    pub cleared: bool,
 }
 
 /// Everything behind the window. It needs a render state but no window, so tests can drive it.
@@ -43,6 +45,7 @@ pub struct App {
     notices: Notices,
     saver: Saver,
     dialogs: Dialogs,
+    cleared: bool,
     dialog: Option<Dialog>,
     path_bar: Option<PathBar>,
     /// What is to be saved once the scene is built.
@@ -77,6 +80,7 @@ impl App {
             notices: Notices::default(),
             saver: Saver::default(),
             dialogs: options.dialogs,
+            cleared: options.cleared,
             dialog: None,
             path_bar: None,
             waiting: Vec::new(),

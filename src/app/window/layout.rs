@@ -16,23 +16,30 @@ impl App {
     /// Shows everything and gathers the commands that it is asked for.
     pub(super) fn layout(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
         let title = self.title();
+        let plain = self.panel_frame();
         let grids = self.engine.grids().clone();
         let mut panel =
             Panel { editor: &mut self.editor, grids: &grids, notes: &self.notes, commands };
-        let bar = Frame::new().fill(color::PANEL).inner_margin(Margin::symmetric(8, 3));
+        let bar = plain.inner_margin(Margin::symmetric(8, 3));
         egui::Panel::top("menu").frame(bar).show(ui, |ui| {
             panels::menu::show(ui, &mut panel, &title);
         });
-        let bar = Frame::new().fill(color::PANEL).inner_margin(Margin::symmetric(8, 0));
+        let bar = plain.inner_margin(Margin::symmetric(8, 0));
         egui::Panel::bottom("status").exact_size(space::STATUS).frame(bar).show(ui, |ui| {
             panels::status::show(ui, &mut panel, &self.engine, &self.viewport);
         });
         if !self.folded {
             let film = self.viewport.film_size();
-            column(ui, &mut panel, film, self.largest);
+            column(ui, &mut panel, plain, film, self.largest);
         }
         egui::CentralPanel::no_frame().show(ui, |ui| self.picture_area(ui));
         panels::help::show(ui.ctx(), &mut self.help);
+    }
+
+    /// What fixed panels lie on. A window that is cleared to their color spares the painting,
+    /// which a software driver feels.
+    fn panel_frame(&self) -> Frame {
+        if self.cleared { Frame::new() } else { Frame::new().fill(color::PANEL) }
     }
 
     /// The picture with the bars that come and go at its edges. The film takes the whole area, so
@@ -96,8 +103,7 @@ fn drop_row(ui: &mut Ui) {
 }
 
 /// The column of panels.
-fn column(ui: &mut Ui, panel: &mut Panel<'_>, film: Option<UVec2>, largest: u32) {
-    let frame = Frame::new().fill(color::PANEL);
+fn column(ui: &mut Ui, panel: &mut Panel<'_>, frame: Frame, film: Option<UVec2>, largest: u32) {
     egui::Panel::right("column").exact_size(space::COLUMN).frame(frame).show(ui, |ui| {
         // A child of its own: contents that are too wide are cut off and push nothing aside.
         let room = ui.max_rect();
