@@ -65,12 +65,12 @@ fn track(mut medium: MediumRay, rng: &mut PathRng, walk: &mut impl Walk) -> u32 
         }
         let mut t = segment.t0;
         loop {
-            let step = optical_distance / rate;
-            if t + step >= segment.t1 {
-                optical_distance = (optical_distance - rate * (segment.t1 - t)).max(0.0);
+            let depth_left = rate * (segment.t1 - t);
+            if optical_distance >= depth_left {
+                optical_distance -= depth_left;
                 break;
             }
-            t += step;
+            t += optical_distance / rate;
             collisions += 1;
             let at = Collision { t, rate, segment: &segment };
             if walk.collide(&medium, &at, rng).is_break() {
@@ -157,14 +157,14 @@ pub struct Glow {
 /// neither scatters nor is absorbed. At each tentative collision L += w ε/μ̄, then w ·= μ_n/μ̄;
 /// closed form in uniform segments.
 pub fn emission(medium: MediumRay, strategy: &Strategy, rng: &mut PathRng) -> Glow {
-    struct EmissionRatio<'s> {
-        strategy: &'s Strategy,
+    struct EmissionRatio {
+        majorant: EmissionMajorant,
         weight: Rgb,
         emission: Rgb,
     }
-    impl Walk for EmissionRatio<'_> {
+    impl Walk for EmissionRatio {
         fn rate(&self, segment: &Segment) -> f32 {
-            emission_rate(self.strategy, segment)
+            self.majorant.rate(segment)
         }
         fn cross(&mut self, medium: &MediumRay, segment: &Segment) -> bool {
             let c = medium.coefficients(segment.t0);
@@ -185,7 +185,8 @@ pub fn emission(medium: MediumRay, strategy: &Strategy, rng: &mut PathRng) -> Gl
             roulette(&mut self.weight, rng)
         }
     }
-    let mut walk = EmissionRatio { strategy, weight: Rgb::ONE, emission: Rgb::ZERO };
+    let majorant = EmissionMajorant::of(strategy);
+    let mut walk = EmissionRatio { majorant, weight: Rgb::ONE, emission: Rgb::ZERO };
     let collisions = track(medium, rng, &mut walk);
     Glow { emission: walk.emission, transmittance: walk.weight, collisions }
 }
@@ -202,18 +203,35 @@ fn mean_free_length(mu_t: Rgb, length: f32) -> Rgb {
 /// The majorant of a walk that gathers emission by collisions: μ̄ = max(maj μ_t, boost · maj ε),
 /// the boosted part at most one collision per voxel unless it is taken literally (Huang et al.
 /// 2021, section 2). It never goes below maj μ_t, nor below a floor wherever something emits.
-fn emission_rate(strategy: &Strategy, segment: &Segment) -> f32 {
-    let advanced = &strategy.advanced;
-    let floor = EMISSION_FLOOR * segment.emission_rate;
-    let base = segment.majorant.max(floor);
-    if !strategy.majorant_boost {
-        return base;
+#[derive(Clone, Copy)]
+struct EmissionMajorant {
+    /// Collisions along the brightest chord.
+    boost: f32,
+    /// Most boosted collisions per voxel.
+    per_voxel: f32,
+}
+
+impl EmissionMajorant {
+    fn of(strategy: &Strategy) -> Self {
+        let advanced = &strategy.advanced;
+        let boost = if strategy.majorant_boost { advanced.boost_amount } else { 0.0 };
+        let per_voxel = match advanced.boost_mode {
+            BoostMode::Clamped => 1.0 / advanced.boost_clamp_voxels,
+            BoostMode::Literal => f32::INFINITY,
+        };
+        Self { boost, per_voxel }
     }
-    let wanted = advanced.boost_amount * segment.emission_rate;
-    let most = segment.voxel_rate / advanced.boost_clamp_voxels;
-    match advanced.boost_mode {
-        BoostMode::Clamped if most > 0.0 => base.max(wanted.min(most)),
-        BoostMode::Clamped | BoostMode::Literal => base.max(wanted),
+
+    #[inline]
+    fn rate(&self, segment: &Segment) -> f32 {
+        let floor = segment.majorant.max(EMISSION_FLOOR * segment.emission_rate);
+        // Without voxels there is nothing to clamp by.
+        let most = if segment.voxel_rate > 0.0 {
+            segment.voxel_rate * self.per_voxel
+        } else {
+            f32::INFINITY
+        };
+        floor.max((self.boost * segment.emission_rate).min(most))
     }
 }
 
@@ -284,7 +302,7 @@ pub fn scatter(
 ) -> Flight {
     let gather = Gather::of(strategy);
     let mut walk = Scattering {
-        strategy,
+        majorant: EmissionMajorant::of(strategy),
         gather,
         throughput,
         weight: Rgb::ONE,
@@ -295,8 +313,8 @@ pub fn scatter(
     Flight { event: walk.event, weight: walk.weight, emission: walk.emission, collisions }
 }
 
-struct Scattering<'s> {
-    strategy: &'s Strategy,
+struct Scattering {
+    majorant: EmissionMajorant,
     gather: Gather,
     /// The path's throughput before the flight; only its color matters here.
     throughput: Rgb,
@@ -305,11 +323,11 @@ struct Scattering<'s> {
     event: Event,
 }
 
-impl Walk for Scattering<'_> {
+impl Walk for Scattering {
     fn rate(&self, segment: &Segment) -> f32 {
         match self.gather {
             Gather::Nothing => segment.majorant,
-            Gather::EveryCollision => emission_rate(self.strategy, segment),
+            Gather::EveryCollision => self.majorant.rate(segment),
             Gather::Absorption => segment.majorant.max(EMISSION_FLOOR * segment.emission_rate),
         }
     }
@@ -353,7 +371,7 @@ impl Walk for Scattering<'_> {
     }
 }
 
-impl Scattering<'_> {
+impl Scattering {
     /// μ_a, or where absorption alone shows the emission, enough of it to show: ε may be positive
     /// with little or no μ_a. The other events make up for the share by their weights, so that
     /// the floor absorbs nothing by itself.
