@@ -22,6 +22,9 @@ use crate::{
 /// Least collisions along a volume's brightest chord where emission is gathered by collisions, and
 /// least absorptions where it is gathered by those, so that fire without soot is found at all.
 const EMISSION_FLOOR: f32 = 0.1;
+/// Most tentative collisions of one walk. One that gets here is cut, and its path counted as cut:
+/// it takes coefficients far beyond what single precision can step through.
+pub const MOST_COLLISIONS: u32 = 1 << 17;
 /// Below this weight a walk of transmittance goes on by chance only.
 const ROULETTE_BELOW: f32 = 0.05;
 
@@ -31,9 +34,7 @@ trait Walk {
     fn rate(&self, segment: &Segment) -> f32;
 
     /// Crosses a uniform segment in closed form; false to be given its collisions instead.
-    fn cross(&mut self, _medium: &MediumRay, _segment: &Segment) -> bool {
-        false
-    }
+    fn cross(&mut self, medium: &MediumRay, segment: &Segment, rng: &mut PathRng) -> bool;
 
     /// A tentative collision under the majorant [`Collision::rate`].
     fn collide(&mut self, medium: &MediumRay, at: &Collision, rng: &mut PathRng)
@@ -56,7 +57,7 @@ fn track(mut medium: MediumRay, rng: &mut PathRng, walk: &mut impl Walk) -> u32 
     let mut collisions = 0;
     let mut optical_distance = rng.exponential();
     while let Some(segment) = medium.next_segment() {
-        if segment.uniform && walk.cross(&medium, &segment) {
+        if segment.uniform && walk.cross(&medium, &segment, rng) {
             continue;
         }
         let rate = walk.rate(&segment);
@@ -65,15 +66,16 @@ fn track(mut medium: MediumRay, rng: &mut PathRng, walk: &mut impl Walk) -> u32 
         }
         let mut t = segment.t0;
         loop {
-            let step = optical_distance / rate;
-            if t + step >= segment.t1 {
-                optical_distance = (optical_distance - rate * (segment.t1 - t)).max(0.0);
+            let depth_left = rate * (segment.t1 - t);
+            if optical_distance >= depth_left {
+                optical_distance -= depth_left;
                 break;
             }
-            t += step;
+            // However short the step, the walk moves on.
+            t = (t + optical_distance / rate).max(t.next_up());
             collisions += 1;
             let at = Collision { t, rate, segment: &segment };
-            if walk.collide(&medium, &at, rng).is_break() {
+            if walk.collide(&medium, &at, rng).is_break() || collisions == MOST_COLLISIONS {
                 return collisions;
             }
             optical_distance = rng.exponential();
@@ -93,6 +95,10 @@ fn null_coefficient(rate: f32, mu_t: Rgb) -> Rgb {
 #[inline]
 fn roulette(weight: &mut Rgb, rng: &mut PathRng) -> ControlFlow<()> {
     let largest = weight.max_element();
+    if !largest.is_finite() {
+        // Leads nowhere, and is counted with the sample it spoils.
+        return ControlFlow::Break(());
+    }
     if largest >= ROULETTE_BELOW {
         return ControlFlow::Continue(());
     }
@@ -122,7 +128,7 @@ pub fn transmittance(medium: MediumRay, rng: &mut PathRng) -> (Rgb, u32) {
         fn rate(&self, segment: &Segment) -> f32 {
             segment.majorant
         }
-        fn cross(&mut self, medium: &MediumRay, segment: &Segment) -> bool {
+        fn cross(&mut self, medium: &MediumRay, segment: &Segment, _: &mut PathRng) -> bool {
             let mu_t = medium.coefficients(segment.t0).mu_t;
             self.weight *= exp_neg(mu_t, segment.t1 - segment.t0);
             true
@@ -157,19 +163,19 @@ pub struct Glow {
 /// neither scatters nor is absorbed. At each tentative collision L += w ε/μ̄, then w ·= μ_n/μ̄;
 /// closed form in uniform segments.
 pub fn emission(medium: MediumRay, strategy: &Strategy, rng: &mut PathRng) -> Glow {
-    struct EmissionRatio<'s> {
-        strategy: &'s Strategy,
+    struct EmissionRatio {
+        majorant: EmissionMajorant,
         weight: Rgb,
         emission: Rgb,
     }
-    impl Walk for EmissionRatio<'_> {
+    impl Walk for EmissionRatio {
         fn rate(&self, segment: &Segment) -> f32 {
-            emission_rate(self.strategy, segment)
+            self.majorant.rate(segment)
         }
-        fn cross(&mut self, medium: &MediumRay, segment: &Segment) -> bool {
+        fn cross(&mut self, medium: &MediumRay, segment: &Segment, _: &mut PathRng) -> bool {
             let c = medium.coefficients(segment.t0);
             let length = segment.t1 - segment.t0;
-            self.emission += self.weight * c.emission * mean_free_length(c.mu_t, length);
+            self.emission += self.weight * attenuated(c.emission, c.mu_t, length);
             self.weight *= exp_neg(c.mu_t, length);
             true
         }
@@ -185,35 +191,59 @@ pub fn emission(medium: MediumRay, strategy: &Strategy, rng: &mut PathRng) -> Gl
             roulette(&mut self.weight, rng)
         }
     }
-    let mut walk = EmissionRatio { strategy, weight: Rgb::ONE, emission: Rgb::ZERO };
+    let majorant = EmissionMajorant::of(strategy);
+    let mut walk = EmissionRatio { majorant, weight: Rgb::ONE, emission: Rgb::ZERO };
     let collisions = track(medium, rng, &mut walk);
     Glow { emission: walk.emission, transmittance: walk.weight, collisions }
 }
 
-/// ∫₀^length exp(−μ_t t) dt per channel.
-fn mean_free_length(mu_t: Rgb, length: f32) -> Rgb {
-    let of = |mu: f32| {
+/// ε ∫₀^length exp(−μ_t t) dt per channel.
+fn attenuated(emission: Rgb, mu_t: Rgb, length: f32) -> Rgb {
+    let of = |epsilon: f32, mu: f32| {
         let tau = mu * length;
-        if tau < 1e-4 { length * (1.0 - 0.5 * tau) } else { -(-tau).exp_m1() / mu }
+        match () {
+            // Not even an infinite length of nothing glows.
+            () if epsilon == 0.0 => 0.0,
+            () if mu == 0.0 => epsilon * length,
+            () if tau < 1e-4 => epsilon * length * (1.0 - 0.5 * tau),
+            () => -epsilon * (-tau).exp_m1() / mu,
+        }
     };
-    Rgb::new(of(mu_t.x), of(mu_t.y), of(mu_t.z))
+    Rgb::new(of(emission.x, mu_t.x), of(emission.y, mu_t.y), of(emission.z, mu_t.z))
 }
 
 /// The majorant of a walk that gathers emission by collisions: μ̄ = max(maj μ_t, boost · maj ε),
 /// the boosted part at most one collision per voxel unless it is taken literally (Huang et al.
 /// 2021, section 2). It never goes below maj μ_t, nor below a floor wherever something emits.
-fn emission_rate(strategy: &Strategy, segment: &Segment) -> f32 {
-    let advanced = &strategy.advanced;
-    let floor = EMISSION_FLOOR * segment.emission_rate;
-    let base = segment.majorant.max(floor);
-    if !strategy.majorant_boost {
-        return base;
+#[derive(Clone, Copy)]
+struct EmissionMajorant {
+    /// Collisions along the brightest chord.
+    boost: f32,
+    /// Most boosted collisions per voxel.
+    per_voxel: f32,
+}
+
+impl EmissionMajorant {
+    fn of(strategy: &Strategy) -> Self {
+        let advanced = &strategy.advanced;
+        let boost = if strategy.majorant_boost { advanced.boost_amount } else { 0.0 };
+        let per_voxel = match advanced.boost_mode {
+            BoostMode::Clamped => 1.0 / advanced.boost_clamp_voxels,
+            BoostMode::Literal => f32::INFINITY,
+        };
+        Self { boost, per_voxel }
     }
-    let wanted = advanced.boost_amount * segment.emission_rate;
-    let most = segment.voxel_rate / advanced.boost_clamp_voxels;
-    match advanced.boost_mode {
-        BoostMode::Clamped if most > 0.0 => base.max(wanted.min(most)),
-        BoostMode::Clamped | BoostMode::Literal => base.max(wanted),
+
+    #[inline]
+    fn rate(&self, segment: &Segment) -> f32 {
+        let floor = segment.majorant.max(EMISSION_FLOOR * segment.emission_rate);
+        // Without voxels there is nothing to clamp by.
+        let most = if segment.voxel_rate > 0.0 {
+            segment.voxel_rate * self.per_voxel
+        } else {
+            f32::INFINITY
+        };
+        floor.max((self.boost * segment.emission_rate).min(most))
     }
 }
 
@@ -250,6 +280,8 @@ pub enum Event {
     Absorbed {
         /// Where.
         t: f32,
+        /// Whether by the medium; or only to show emission that comes without absorption.
+        real: bool,
     },
     /// It scatters.
     Scattered {
@@ -284,7 +316,7 @@ pub fn scatter(
 ) -> Flight {
     let gather = Gather::of(strategy);
     let mut walk = Scattering {
-        strategy,
+        majorant: EmissionMajorant::of(strategy),
         gather,
         throughput,
         weight: Rgb::ONE,
@@ -295,8 +327,8 @@ pub fn scatter(
     Flight { event: walk.event, weight: walk.weight, emission: walk.emission, collisions }
 }
 
-struct Scattering<'s> {
-    strategy: &'s Strategy,
+struct Scattering {
+    majorant: EmissionMajorant,
     gather: Gather,
     /// The path's throughput before the flight; only its color matters here.
     throughput: Rgb,
@@ -305,13 +337,40 @@ struct Scattering<'s> {
     event: Event,
 }
 
-impl Walk for Scattering<'_> {
+impl Walk for Scattering {
     fn rate(&self, segment: &Segment) -> f32 {
         match self.gather {
             Gather::Nothing => segment.majorant,
-            Gather::EveryCollision => emission_rate(self.strategy, segment),
+            Gather::EveryCollision => self.majorant.rate(segment),
             Gather::Absorption => segment.majorant.max(EMISSION_FLOOR * segment.emission_rate),
         }
+    }
+
+    /// Where a uniform medium goes on for ever, a channel it is clear to never collides, and one
+    /// it is not clear to always does. One of the two kinds is chosen, so that neither waits for
+    /// the other; the rest of uniform media is left to the collisions.
+    fn cross(&mut self, medium: &MediumRay, segment: &Segment, rng: &mut PathRng) -> bool {
+        if segment.t1.is_finite() {
+            return false;
+        }
+        let clear = medium.coefficients(segment.t0).mu_t.cmpeq(Rgb::ZERO);
+        if !clear.any() {
+            return false;
+        }
+        let color = self.throughput * self.weight;
+        let total = mean(color);
+        if !(total > 0.0 && total.is_finite()) {
+            self.weight *= total;
+            return true;
+        }
+        let escape = mean(Rgb::select(clear, color, Rgb::ZERO)) / total;
+        let escapes = rng.uniform() < escape;
+        self.weight = if escapes {
+            Rgb::select(clear, self.weight / escape, Rgb::ZERO)
+        } else {
+            Rgb::select(clear, Rgb::ZERO, self.weight / (1.0 - escape))
+        };
+        escapes
     }
 
     fn collide(
@@ -330,9 +389,10 @@ impl Walk for Scattering<'_> {
         let color = self.throughput * self.weight;
         let [a, s, n] = [absorb, c.mu_s, mu_n].map(|mu| mean(color * mu));
         let total = a + s + n;
-        if total <= 0.0 {
-            self.weight = Rgb::ZERO;
-            self.event = Event::Absorbed { t };
+        if !(total > 0.0 && total.is_finite()) {
+            // Nothing is left to follow; what is no number stays one and is counted.
+            self.weight *= total;
+            self.event = Event::Absorbed { t, real: false };
             return ControlFlow::Break(());
         }
         let u = rng.uniform() * total;
@@ -347,13 +407,14 @@ impl Walk for Scattering<'_> {
             if self.gather == Gather::Absorption {
                 self.emission += self.weight * c.emission * (total / (rate * a));
             }
-            self.event = Event::Absorbed { t };
+            let real = u - n - s < mean(color * c.mu_a());
+            self.event = Event::Absorbed { t, real };
         }
         ControlFlow::Break(())
     }
 }
 
-impl Scattering<'_> {
+impl Scattering {
     /// μ_a, or where absorption alone shows the emission, enough of it to show: ε may be positive
     /// with little or no μ_a. The other events make up for the share by their weights, so that
     /// the floor absorbs nothing by itself.
