@@ -35,6 +35,8 @@ pub struct RenderStats {
     pub paths: u64,
     /// Samples that were not finite and count as zero.
     pub non_finite: u64,
+    /// Paths cut by the guard against endless scattering.
+    pub guard_hits: u64,
     /// Relative standard error of the picture, see [`FilmStats::noise`]; none before two samples.
     pub noise: Option<f64>,
     /// Whether the limit is reached.
@@ -100,6 +102,7 @@ pub(crate) fn render_stats(
         tracking_steps: film.totals.tracking_steps,
         paths: film.totals.paths,
         non_finite: film.totals.non_finite,
+        guard_hits: film.totals.guard_hits,
         noise,
         finished,
     }
