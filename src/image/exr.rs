@@ -222,22 +222,18 @@ impl<'a> State<'a> {
                 read.map_err(|e| exr_error(self.path, e))?;
             }
             if line.location.channel == last {
-                self.restore_line(
-                    UVec2::new(left as u32, line.location.position.y() as u32),
-                    width,
-                )?;
+                self.restore_line(UVec2::new(left as u32, line.location.position.y() as u32))?;
             }
         }
         Ok(())
     }
 
-    /// Restores `width` pixels from `first` to the right, out of the rows.
-    fn restore_line(&mut self, first: UVec2, width: usize) -> Result<()> {
+    /// Restores the pixels from `first` to the right, out of the rows.
+    fn restore_line(&mut self, first: UVec2) -> Result<()> {
         let (states, counts) = self.rows.split_at(self.rows.len() - 1);
-        for index in 0..width {
+        for (index, &count) in counts.iter().flatten().enumerate() {
             let pixel = UVec2::new(first.x + index as u32, first.y);
-            let words = words_at(states, index);
-            let Some((count, sums)) = state_from(counts[0][index], words) else {
+            let Some((count, sums)) = state_from(count, words_at(states, index)) else {
                 let reason = format!("pixel {},{} holds impossible sums", pixel.x, pixel.y);
                 return Err(invalid(self.path, "state", reason));
             };
@@ -358,7 +354,7 @@ mod tests {
         assert!(read_info(&folder.path().join("absent.exr")).is_err());
     }
 
-    /// Scripts look for these names, and OpenEXR's own libraries refuse a text named `version`.
+    /// Scripts look for these names; a text named `version` would be lost or refused by readers.
     #[test]
     fn attributes_have_plain_names() {
         let folder = tempfile::tempdir().unwrap();

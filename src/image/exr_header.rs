@@ -3,7 +3,8 @@
 //!
 //! Names are plain where scenes' documentation promises them to other programs, and begin with
 //! `flambeau.` where they only serve to go on. The version stands in `software` as
-//! `Flambeau 1.2.3`: OpenEXR reserves `version` for a number, and refuses files with a text there.
+//! `Flambeau 1.2.3`: OpenEXR reserves `version` for a number, so that readers lose or refuse a text
+//! of that name.
 
 use std::path::Path;
 
