@@ -343,6 +343,17 @@ fn saved_files_hold_what_is_shown() {
     let toml = toml.with_extension("toml");
     assert_eq!(scene::load(toml.to_str().unwrap()).unwrap(), window.document().settings);
 
+    // A file that exists is replaced only after a second confirmation.
+    window.press(Modifiers::COMMAND, Key::S);
+    window.type_path(exr.to_str().unwrap());
+    assert!(window.has("This file exists"));
+    let written = std::fs::metadata(&exr).unwrap().modified().unwrap();
+    window.press(Modifiers::NONE, Key::Enter);
+    window.until("the file is replaced", |_| {
+        std::fs::metadata(&exr).unwrap().modified().unwrap() > written
+    });
+    assert!(!window.has("This file exists"));
+
     // The PNG is what the shader shows: the middle of each block of the enlarged picture.
     let png = window.save(Modifiers::COMMAND.plus(Modifiers::SHIFT), "picture.png");
     let png = image::open(png).unwrap().into_rgb8();

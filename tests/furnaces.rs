@@ -209,3 +209,29 @@ fn radiance_under_the_lamp() -> f64 {
         })
         .sum()
 }
+
+/// A fog without borders that is clear to one channel: the clear channel sees the environment, the
+/// others the furnace, and no path waits for a collision that never comes.
+#[test]
+fn fog_that_is_clear_to_a_channel() {
+    let text = format!(
+        r#"{CAMERA}
+        [environment]
+        radiance = [5.0, 5.0, 1.0]
+        [[volume]]
+        shape = "everywhere"
+        density = {{ scale = [0.3, 0.1, 0.0] }}
+        albedo = 0.5
+        emission = {{ mode = "source", le = 2.0 }}
+        "#
+    );
+    let scene = build(&text);
+    let mut verdicts = Verdicts::default();
+    for strategy in all_strategies() {
+        let estimate = measure(&with_strategy(&scene, strategy), 400_000);
+        for (channel, expected) in [2.0, 2.0, 1.0].into_iter().enumerate() {
+            verdicts.check_channel(&name(&strategy), &estimate, channel, expected);
+        }
+    }
+    verdicts.finish();
+}

@@ -128,10 +128,13 @@ pub fn finite(text: &str) -> Option<f64> {
     digits.parse().ok().filter(|value: &f64| value.abs() <= f64::from(f32::MAX))
 }
 
-/// A number in four significant digits, without trailing zeros.
+/// A number in four significant digits, without trailing zeros, and never longer than a field.
 pub fn significant(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");
+    }
+    if !(1e-3..1e6).contains(&value.abs()) {
+        return format!("{value:.1e}");
     }
     let digits = 3 - value.abs().log10().floor() as i32;
     let decimals = usize::try_from(digits.clamp(0, 7)).unwrap_or(0);
@@ -160,6 +163,7 @@ pub fn vector(ui: &mut Ui, name: &str, key: &str, value: &mut [f32; 3], speed: f
         row_label(ui, name, &help);
         let gaps = 2.0 * ui.spacing().item_spacing.x;
         let width = ((ui.available_width() - gaps) / 3.0).max(30.0);
+        ui.spacing_mut().button_padding.x = 2.0;
         for (component, axis) in value.iter_mut().zip(["x", "y", "z"]) {
             let field = DragValue::new(component)
                 .speed(speed)
@@ -217,6 +221,10 @@ mod tests {
     fn numbers_read_well() {
         let texts = [0.0, 1.0, 12.5, 1500.0, 0.012_345, -0.5, 123_456.0].map(significant);
         assert_eq!(texts, ["0", "1", "12.5", "1500", "0.01235", "-0.5", "123456"]);
+        assert_eq!([-1.19e-7, 3.2e9].map(significant), ["-1.2e-7", "3.2e9"]);
+        for exponent in -12..12 {
+            assert!(significant(-1.234_567 * 10.0_f64.powi(exponent)).len() <= 9);
+        }
         assert_eq!(count(24_100_000.0), "24.1 M");
         assert_eq!(count(12.0), "12");
         assert_eq!(["1 500", "nan", "inf", "x"].map(finite), [Some(1500.0), None, None, None]);

@@ -13,6 +13,9 @@ use crate::{
     surface::{Hit, Shape, Surface},
 };
 
+/// Bound of a light's importance; sums of them stay finite.
+const MOST_IMPORTANT: f32 = 1e30;
+
 /// A light that can be sampled.
 #[derive(Clone, Debug)]
 pub enum Light {
@@ -133,8 +136,13 @@ impl Lights {
 
 impl Light {
     /// A rough irradiance at `from`, all of its light assumed to arrive; above zero wherever the
-    /// light can bring anything.
+    /// light can bring anything, and finite, so that no light drowns the others.
     fn importance(&self, from: Vec3A) -> f32 {
+        let irradiance = self.rough_irradiance(from);
+        if irradiance.is_nan() { 0.0 } else { irradiance.min(MOST_IMPORTANT) }
+    }
+
+    fn rough_irradiance(&self, from: Vec3A) -> f32 {
         match self {
             Self::Sun(sun) => luminance(sun.irradiance()),
             Self::Point(point) => point.importance(from),

@@ -12,6 +12,14 @@ pub fn spherical(cos_theta: f32, phi: f32) -> Vec3A {
     Vec3A::new(sin_theta * cos_phi, sin_theta * sin_phi, cos_theta)
 }
 
+/// A unit vector from 1 − cos of its angle to +z and its azimuth; narrow angles keep their digits.
+#[inline]
+pub fn about_axis(one_minus_cos: f32, phi: f32) -> Vec3A {
+    let sin_theta = (one_minus_cos * (2.0 - one_minus_cos)).max(0.0).sqrt();
+    let (sin_phi, cos_phi) = phi.sin_cos();
+    Vec3A::new(sin_theta * cos_phi, sin_theta * sin_phi, 1.0 - one_minus_cos)
+}
+
 /// A direction uniform over the sphere; its density is [`UNIFORM_SPHERE_PDF`].
 #[inline]
 pub fn uniform_sphere(u: Vec2) -> Vec3A {
@@ -37,10 +45,7 @@ pub fn cosine_hemisphere_pdf(cos_theta: f32) -> f32 {
 /// given so because narrow cones would lose it to rounding.
 #[inline]
 pub fn uniform_cone(u: Vec2, one_minus_cos: f32) -> Vec3A {
-    let below = u.x * one_minus_cos;
-    let sin_theta = (below * (2.0 - below)).max(0.0).sqrt();
-    let (sin_phi, cos_phi) = (TAU * u.y).sin_cos();
-    Vec3A::new(sin_theta * cos_phi, sin_theta * sin_phi, 1.0 - below)
+    about_axis(u.x * one_minus_cos, TAU * u.y)
 }
 
 /// Density of [`uniform_cone`] over solid angle inside the cone.

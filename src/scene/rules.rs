@@ -4,8 +4,8 @@
 use glam::{Mat3, Vec3};
 
 use super::settings::{
-    CameraSettings, LightKind, LightSettings, RampKind, Settings, SurfaceSettings, SurfaceShape,
-    VolumeSettings, VolumeShape,
+    CameraSettings, EmissionMode, LightKind, LightSettings, RampKind, Settings, SurfaceSettings,
+    SurfaceShape, VolumeSettings, VolumeShape,
 };
 use crate::error::{Error, Result};
 
@@ -59,6 +59,9 @@ fn volume(volume: &VolumeSettings) -> Result<(), Fault> {
         _ => {}
     }
     placement(volume)?;
+    if volume.shape == Some(VolumeShape::Everywhere) {
+        everywhere(volume)?;
+    }
     if volume.shape == Some(VolumeShape::Ramp) {
         ramp(volume)?;
     }
@@ -92,6 +95,17 @@ fn placement(volume: &VolumeSettings) -> Result<(), Fault> {
     Ok(())
 }
 
+/// Without extinction a glow that fills space adds up to infinity.
+fn everywhere(volume: &VolumeSettings) -> Result<(), Fault> {
+    let glows = !matches!(volume.emission.mode, EmissionMode::None | EmissionMode::Source);
+    if glows && volume.density.scale.rgb().min_element() <= 0.0 {
+        let reason = "a volume without borders that glows must have a density above 0 in every \
+                      channel, else it is infinitely bright";
+        return fault("density.scale", reason);
+    }
+    Ok(())
+}
+
 fn ramp(volume: &VolumeSettings) -> Result<(), Fault> {
     let axis = volume.axis().index();
     let far = 2.0 * volume.half_size().axes().get(axis).copied().unwrap_or(1.0);
@@ -107,8 +121,12 @@ fn light(light: &LightSettings) -> Result<(), Fault> {
     match light.kind {
         LightKind::Sun => direction("direction", light.direction()),
         LightKind::Quad => quad(light.half_u(), light.half_v()),
-        LightKind::Spot if light.position() == light.target() => {
-            fault("target", "target and position are the same point; move one of them")
+        LightKind::Spot => {
+            let axis = Vec3::from(light.target()) - Vec3::from(light.position());
+            match axis.try_normalize() {
+                Some(_) => Ok(()),
+                None => fault("target", "target and position are the same point; move one of them"),
+            }
         }
         _ => Ok(()),
     }

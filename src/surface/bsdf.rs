@@ -65,7 +65,7 @@ impl Bsdf {
             }
             Material::Conductor { alpha, reflectance } => {
                 let half = (self.outgoing + incoming).normalize_or_zero();
-                let d = ggx_distribution(alpha, half.z);
+                let d = ggx_distribution(alpha, half);
                 let (lambda_o, lambda_i) = (lambda(alpha, self.outgoing), lambda(alpha, incoming));
                 // D·G/(4 cos_o cos_i)·cos_i, and the density of visible normals over 4 (o·h).
                 let value = d / (4.0 * self.outgoing.z * (1.0 + lambda_o + lambda_i));
@@ -93,10 +93,11 @@ impl Bsdf {
     }
 }
 
-/// GGX distribution of microfacet normals (Walter et al. 2007, equation 33).
-fn ggx_distribution(alpha: f32, cos_theta: f32) -> f32 {
+/// GGX distribution of microfacet normals (Walter et al. 2007, equation 33), its denominator
+/// written as α² cos² + sin² so that smooth metals keep their digits.
+fn ggx_distribution(alpha: f32, half: Vec3A) -> f32 {
     let a2 = alpha * alpha;
-    let base = cos_theta * cos_theta * (a2 - 1.0) + 1.0;
+    let base = a2 * half.z * half.z + half.x * half.x + half.y * half.y;
     a2 / (PI * base * base)
 }
 

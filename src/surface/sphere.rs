@@ -50,6 +50,11 @@ impl Sphere {
         let Some(one_minus_cos) = self.cone(from) else {
             let normal = uniform_sphere(u);
             let to_point = self.center + self.radius * normal - from;
+            let outside = (from - self.center).length_squared() > self.radius * self.radius;
+            if outside && normal.dot(to_point) > 0.0 {
+                // The far side, hidden behind the near one.
+                return None;
+            }
             let pdf_solid_angle = pdf_from_area(1.0 / self.area(), to_point, normal);
             let distance = to_point.length();
             let direction = to_point / distance;

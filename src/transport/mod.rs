@@ -35,7 +35,7 @@ pub struct PathSample {
     pub depth: Option<f32>,
     /// Tentative collisions of all walks of the path.
     pub tracking_steps: u32,
-    /// Whether the path was cut at [`path::GUARD`] events.
+    /// Whether the path was cut, at [`path::GUARD`] events or [`tracking::MOST_COLLISIONS`].
     pub guard_hit: bool,
 }
 

@@ -73,7 +73,7 @@ impl Path<'_> {
             return false;
         }
         let flight = tracking::scatter(medium, &scene.strategy, self.throughput, rng);
-        self.sample.tracking_steps += flight.collisions;
+        self.count(flight.collisions);
         self.gather_emission(flight.emission, observer);
         self.throughput *= flight.weight;
         if self.scatters == 0 {
@@ -81,7 +81,7 @@ impl Path<'_> {
         }
 
         let vertex = match flight.event {
-            Event::Absorbed { t } => {
+            Event::Absorbed { t, .. } => {
                 observer.step(Step::Absorbed { point: self.ray.at(t) });
                 return false;
             }
@@ -113,7 +113,7 @@ impl Path<'_> {
         observer: &mut impl Observer,
     ) -> Rgb {
         let glow = tracking::emission(medium, &self.scene.strategy, rng);
-        self.sample.tracking_steps += glow.collisions;
+        self.count(glow.collisions);
         self.gather_emission(glow.emission, observer);
         let radiance = direct::at_the_end(self.scene, &self.ray, end, self.departure);
         self.gather_end(glow.transmittance * radiance, observer);
@@ -138,16 +138,25 @@ impl Path<'_> {
         self.scatters += 1;
         observer.step(Step::Vertex { vertex, throughput: self.throughput });
         let (light, collisions) = direct::sample_lights(self.scene, vertex, rng);
-        self.sample.tracking_steps += collisions;
+        self.count(collisions);
         let light = self.throughput * light;
         observer.step(Step::Light { contribution: light });
         self.add_scattered(light);
 
+        if self.sample.guard_hit {
+            return false;
+        }
         let Some(turn) = vertex.sample(rng) else { return false };
         self.throughput *= turn.weight;
         self.ray = vertex.ray(turn.direction);
         self.departure = Some((vertex.position, turn.pdf_solid_angle));
         self.survives(rng)
+    }
+
+    /// Counts the collisions of a walk, and notes a walk that was cut.
+    fn count(&mut self, collisions: u32) {
+        self.sample.tracking_steps = self.sample.tracking_steps.saturating_add(collisions);
+        self.sample.guard_hit |= collisions >= tracking::MOST_COLLISIONS;
     }
 
     /// Russian roulette on the throughput, compensated.
@@ -199,7 +208,8 @@ impl Path<'_> {
         transmittance: Option<Rgb>,
     ) {
         let (opacity, depth) = match (&flight.event, end) {
-            (Event::Absorbed { t } | Event::Scattered { t, .. }, _) => (1.0, Some(*t)),
+            (Event::Absorbed { real: false, .. }, _) => (1.0, None),
+            (Event::Absorbed { t, .. } | Event::Scattered { t, .. }, _) => (1.0, Some(*t)),
             (Event::Reached, Some(end)) => (1.0, Some(end.hit.t)),
             (Event::Reached, None) => (1.0 - mean(flight.weight), None),
         };

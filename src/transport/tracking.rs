@@ -22,6 +22,9 @@ use crate::{
 /// Least collisions along a volume's brightest chord where emission is gathered by collisions, and
 /// least absorptions where it is gathered by those, so that fire without soot is found at all.
 const EMISSION_FLOOR: f32 = 0.1;
+/// Most tentative collisions of one walk. One that gets here is cut, and its path counted as cut:
+/// it takes coefficients far beyond what single precision can step through.
+pub const MOST_COLLISIONS: u32 = 1 << 17;
 /// Below this weight a walk of transmittance goes on by chance only.
 const ROULETTE_BELOW: f32 = 0.05;
 
@@ -31,9 +34,7 @@ trait Walk {
     fn rate(&self, segment: &Segment) -> f32;
 
     /// Crosses a uniform segment in closed form; false to be given its collisions instead.
-    fn cross(&mut self, _medium: &MediumRay, _segment: &Segment) -> bool {
-        false
-    }
+    fn cross(&mut self, medium: &MediumRay, segment: &Segment, rng: &mut PathRng) -> bool;
 
     /// A tentative collision under the majorant [`Collision::rate`].
     fn collide(&mut self, medium: &MediumRay, at: &Collision, rng: &mut PathRng)
@@ -56,7 +57,7 @@ fn track(mut medium: MediumRay, rng: &mut PathRng, walk: &mut impl Walk) -> u32 
     let mut collisions = 0;
     let mut optical_distance = rng.exponential();
     while let Some(segment) = medium.next_segment() {
-        if segment.uniform && walk.cross(&medium, &segment) {
+        if segment.uniform && walk.cross(&medium, &segment, rng) {
             continue;
         }
         let rate = walk.rate(&segment);
@@ -70,10 +71,11 @@ fn track(mut medium: MediumRay, rng: &mut PathRng, walk: &mut impl Walk) -> u32 
                 optical_distance -= depth_left;
                 break;
             }
-            t += optical_distance / rate;
+            // However short the step, the walk moves on.
+            t = (t + optical_distance / rate).max(t.next_up());
             collisions += 1;
             let at = Collision { t, rate, segment: &segment };
-            if walk.collide(&medium, &at, rng).is_break() {
+            if walk.collide(&medium, &at, rng).is_break() || collisions == MOST_COLLISIONS {
                 return collisions;
             }
             optical_distance = rng.exponential();
@@ -93,6 +95,10 @@ fn null_coefficient(rate: f32, mu_t: Rgb) -> Rgb {
 #[inline]
 fn roulette(weight: &mut Rgb, rng: &mut PathRng) -> ControlFlow<()> {
     let largest = weight.max_element();
+    if !largest.is_finite() {
+        // Leads nowhere, and is counted with the sample it spoils.
+        return ControlFlow::Break(());
+    }
     if largest >= ROULETTE_BELOW {
         return ControlFlow::Continue(());
     }
@@ -122,7 +128,7 @@ pub fn transmittance(medium: MediumRay, rng: &mut PathRng) -> (Rgb, u32) {
         fn rate(&self, segment: &Segment) -> f32 {
             segment.majorant
         }
-        fn cross(&mut self, medium: &MediumRay, segment: &Segment) -> bool {
+        fn cross(&mut self, medium: &MediumRay, segment: &Segment, _: &mut PathRng) -> bool {
             let mu_t = medium.coefficients(segment.t0).mu_t;
             self.weight *= exp_neg(mu_t, segment.t1 - segment.t0);
             true
@@ -166,10 +172,10 @@ pub fn emission(medium: MediumRay, strategy: &Strategy, rng: &mut PathRng) -> Gl
         fn rate(&self, segment: &Segment) -> f32 {
             self.majorant.rate(segment)
         }
-        fn cross(&mut self, medium: &MediumRay, segment: &Segment) -> bool {
+        fn cross(&mut self, medium: &MediumRay, segment: &Segment, _: &mut PathRng) -> bool {
             let c = medium.coefficients(segment.t0);
             let length = segment.t1 - segment.t0;
-            self.emission += self.weight * c.emission * mean_free_length(c.mu_t, length);
+            self.emission += self.weight * attenuated(c.emission, c.mu_t, length);
             self.weight *= exp_neg(c.mu_t, length);
             true
         }
@@ -191,13 +197,19 @@ pub fn emission(medium: MediumRay, strategy: &Strategy, rng: &mut PathRng) -> Gl
     Glow { emission: walk.emission, transmittance: walk.weight, collisions }
 }
 
-/// ∫₀^length exp(−μ_t t) dt per channel.
-fn mean_free_length(mu_t: Rgb, length: f32) -> Rgb {
-    let of = |mu: f32| {
+/// ε ∫₀^length exp(−μ_t t) dt per channel.
+fn attenuated(emission: Rgb, mu_t: Rgb, length: f32) -> Rgb {
+    let of = |epsilon: f32, mu: f32| {
         let tau = mu * length;
-        if tau < 1e-4 { length * (1.0 - 0.5 * tau) } else { -(-tau).exp_m1() / mu }
+        match () {
+            // Not even an infinite length of nothing glows.
+            () if epsilon == 0.0 => 0.0,
+            () if mu == 0.0 => epsilon * length,
+            () if tau < 1e-4 => epsilon * length * (1.0 - 0.5 * tau),
+            () => -epsilon * (-tau).exp_m1() / mu,
+        }
     };
-    Rgb::new(of(mu_t.x), of(mu_t.y), of(mu_t.z))
+    Rgb::new(of(emission.x, mu_t.x), of(emission.y, mu_t.y), of(emission.z, mu_t.z))
 }
 
 /// The majorant of a walk that gathers emission by collisions: μ̄ = max(maj μ_t, boost · maj ε),
@@ -268,6 +280,8 @@ pub enum Event {
     Absorbed {
         /// Where.
         t: f32,
+        /// Whether by the medium; or only to show emission that comes without absorption.
+        real: bool,
     },
     /// It scatters.
     Scattered {
@@ -332,6 +346,33 @@ impl Walk for Scattering {
         }
     }
 
+    /// Where a uniform medium goes on for ever, a channel it is clear to never collides, and one
+    /// it is not clear to always does. One of the two kinds is chosen, so that neither waits for
+    /// the other; the rest of uniform media is left to the collisions.
+    fn cross(&mut self, medium: &MediumRay, segment: &Segment, rng: &mut PathRng) -> bool {
+        if segment.t1.is_finite() {
+            return false;
+        }
+        let clear = medium.coefficients(segment.t0).mu_t.cmpeq(Rgb::ZERO);
+        if !clear.any() {
+            return false;
+        }
+        let color = self.throughput * self.weight;
+        let total = mean(color);
+        if !(total > 0.0 && total.is_finite()) {
+            self.weight *= total;
+            return true;
+        }
+        let escape = mean(Rgb::select(clear, color, Rgb::ZERO)) / total;
+        let escapes = rng.uniform() < escape;
+        self.weight = if escapes {
+            Rgb::select(clear, self.weight / escape, Rgb::ZERO)
+        } else {
+            Rgb::select(clear, Rgb::ZERO, self.weight / (1.0 - escape))
+        };
+        escapes
+    }
+
     fn collide(
         &mut self,
         medium: &MediumRay,
@@ -348,9 +389,10 @@ impl Walk for Scattering {
         let color = self.throughput * self.weight;
         let [a, s, n] = [absorb, c.mu_s, mu_n].map(|mu| mean(color * mu));
         let total = a + s + n;
-        if total <= 0.0 {
-            self.weight = Rgb::ZERO;
-            self.event = Event::Absorbed { t };
+        if !(total > 0.0 && total.is_finite()) {
+            // Nothing is left to follow; what is no number stays one and is counted.
+            self.weight *= total;
+            self.event = Event::Absorbed { t, real: false };
             return ControlFlow::Break(());
         }
         let u = rng.uniform() * total;
@@ -365,7 +407,8 @@ impl Walk for Scattering {
             if self.gather == Gather::Absorption {
                 self.emission += self.weight * c.emission * (total / (rate * a));
             }
-            self.event = Event::Absorbed { t };
+            let real = u - n - s < mean(color * c.mu_a());
+            self.event = Event::Absorbed { t, real };
         }
         ControlFlow::Break(())
     }

@@ -166,25 +166,28 @@ impl Volume {
 }
 
 /// Sums the emission at the cells' centers along every row of cells of each axis, and keeps the
-/// largest sum. It only sets the unit of the boost amount, so a coarse sum will do.
+/// largest sum. It only sets the unit of the boost amount, so a coarse sum will do; but sparks
+/// between the centers count too, half a cell long, lest that unit be next to nothing.
 fn probe_chords(cells: &MajorantGrid, substance: &Substance) -> Vec3A {
     if !substance.emission.is_some() {
         return Vec3A::ZERO;
     }
+    let mut brightest = 0.0_f32;
     let mut rows = std::collections::BTreeMap::<(usize, i32, i32), f32>::new();
     cells.for_each_cell(|cell, region, majorant| {
         if majorant.emission <= 0.0 {
             return;
         }
         let emission = luminance(substance.at(region.center()).emission);
+        brightest = brightest.max(majorant.emission);
         for axis in 0..3 {
             let row: IVec3 = cell;
             let key = (axis, row[(axis + 1) % 3], row[(axis + 2) % 3]);
             *rows.entry(key).or_default() += emission * cells.cell_size()[axis];
         }
     });
-    rows.iter().fold(Vec3A::ZERO, |mut brightest, (&(axis, ..), &sum)| {
-        brightest[axis] = brightest[axis].max(sum);
-        brightest
+    rows.iter().fold(0.5 * brightest * cells.cell_size(), |mut chords, (&(axis, ..), &sum)| {
+        chords[axis] = chords[axis].max(sum);
+        chords
     })
 }

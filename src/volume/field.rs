@@ -16,21 +16,16 @@ pub struct GridField<V: Voxel> {
     grid: Arc<SparseGrid<V>>,
     /// `None` where the volume's space is the grid's own index space.
     grid_from_local: Option<Affine3A>,
-    /// Where the grid ends, in its index space, if its background is not zero.
-    clip: Option<Aabb>,
+    /// Where the grid ends, in its index space, whatever other grids the volume has.
+    support: Aabb,
 }
 
 impl<V: Voxel> GridField<V> {
     /// Places `grid` in a volume's space. An identity placement costs nothing at look-up.
     pub fn new(grid: Arc<SparseGrid<V>>, grid_from_local: Affine3A) -> Self {
         let identity = grid_from_local.abs_diff_eq(Affine3A::IDENTITY, 1e-6);
-        let clip = (grid.background() != V::ZERO).then(|| grid_support(&grid));
-        Self { grid, grid_from_local: (!identity).then_some(grid_from_local), clip }
-    }
-
-    /// The grid itself.
-    pub fn grid(&self) -> &Arc<SparseGrid<V>> {
-        &self.grid
+        let support = grid_support(&grid);
+        Self { grid, grid_from_local: (!identity).then_some(grid_from_local), support }
     }
 
     /// Trilinear value at a point of the volume's space.
@@ -40,9 +35,7 @@ impl<V: Voxel> GridField<V> {
             None => local,
             Some(transform) => transform.transform_point3a(local),
         };
-        if let Some(clip) = &self.clip
-            && (index.cmplt(clip.min) | index.cmpgt(clip.max)).any()
-        {
+        if (index.cmplt(self.support.min) | index.cmpgt(self.support.max)).any() {
             return V::ZERO;
         }
         self.grid.sample(index)
@@ -55,10 +48,11 @@ impl<V: Voxel> GridField<V> {
             Some(transform) => local.transformed(transform),
         };
         let (min, max) = self.grid.range(index.min.into(), index.max.into());
-        if self.clip.is_some() {
-            return (min.component_min(V::ZERO), max.component_max(V::ZERO));
+        let inside = index.min.cmpge(self.support.min) & index.max.cmple(self.support.max);
+        if inside.all() {
+            return (min, max);
         }
-        (min, max)
+        (min.component_min(V::ZERO), max.component_max(V::ZERO))
     }
 }
 

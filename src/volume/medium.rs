@@ -22,7 +22,7 @@ impl Coefficients {
     }
 }
 
-/// A stretch of a ray over which one set of bounds holds. Empty stretches are never seen.
+/// A stretch of a ray over which one set of bounds holds. Stretches without matter are passed over.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Segment {
     /// Where it begins, as a ray parameter.

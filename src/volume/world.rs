@@ -36,10 +36,7 @@ impl Instance {
         let lengths =
             Vec3A::new(columns.x_axis.length(), columns.y_axis.length(), columns.z_axis.length());
         let chord = (volume.chords() * lengths).max_element();
-        // A grid may emit only between the probing chords; any positive unit keeps it sampled.
-        let diagonal = volume.region().bounds().diagonal();
-        let emission_rate =
-            if chord > 0.0 { 1.0 / chord } else { fallback_rate(&volume, diagonal) };
+        let emission_rate = if chord > 0.0 { 1.0 / chord } else { 0.0 };
         let voxel_rate = volume.voxel().map_or(0.0, |v| 1.0 / (v * lengths.min_element()));
         let bounds = match volume.region() {
             Region::Everywhere => Aabb::centered(Vec3A::INFINITY),
@@ -58,13 +55,6 @@ impl Instance {
     pub fn bounds(&self) -> &Aabb {
         &self.bounds
     }
-}
-
-fn fallback_rate(volume: &Volume, diagonal: f32) -> f32 {
-    let Bounds::Cells(cells) = volume.bounds() else { return 0.0 };
-    let mut largest = 0.0_f32;
-    cells.for_each_cell(|_, _, majorant| largest = largest.max(majorant.emission));
-    if largest > 0.0 { 1.0 / (largest * diagonal) } else { 0.0 }
 }
 
 /// Every volume of a scene.
@@ -98,11 +88,6 @@ impl World {
         &self.instances
     }
 
-    /// Whether any volume emits.
-    pub fn emits(&self) -> bool {
-        self.instances.iter().any(|i| i.volume.substance().emission.is_some())
-    }
-
     /// The medium along `ray` up to `t_max`, which may be infinite.
     pub fn along(&self, ray: Ray, t_max: f32) -> MediumRay<'_> {
         let mut medium =
@@ -122,7 +107,7 @@ impl World {
                 t_max
             });
         }
-        // Nearest last, so that entering pops; ties keep the order of the scene file.
+        // Nearest last, so that entering pops.
         if medium.ahead.len() > 1 {
             medium.ahead.sort_by(|a, b| b.t0.total_cmp(&a.t0));
         }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use egui::{Frame, Margin, ScrollArea, Ui};
+use egui::{Frame, Margin, ScrollArea, Ui, UiBuilder};
 use glam::UVec2;
 
 use super::App;
@@ -99,7 +99,11 @@ fn drop_row(ui: &mut Ui) {
 fn column(ui: &mut Ui, panel: &mut Panel<'_>, film: Option<UVec2>, largest: u32) {
     let frame = Frame::new().fill(color::PANEL);
     egui::Panel::right("column").exact_size(space::COLUMN).frame(frame).show(ui, |ui| {
-        ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+        // A child of its own: contents that are too wide are cut off and push nothing aside.
+        let room = ui.max_rect();
+        let mut ui = ui.new_child(UiBuilder::new().max_rect(room));
+        ui.shrink_clip_rect(room);
+        ScrollArea::vertical().auto_shrink(false).show(&mut ui, |ui| {
             let inner = Frame::new().inner_margin(Margin::same(space::PANEL));
             inner.show(ui, |ui| {
                 panels::strategy::show(ui, panel);

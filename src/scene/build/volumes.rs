@@ -42,6 +42,11 @@ pub(super) fn instances(
         let key = format!("volume.{index}");
         let built = built(settings, &key, cache, &part)?;
         let world_from_local = world_from_file(settings) * built.file_from_local.as_affine3a();
+        if !(world_from_local.is_finite() && world_from_local.inverse().is_finite()) {
+            let field = if settings.matrix.is_some() { "matrix" } else { "scale" };
+            let reason = "places the volume too small, too large or too far away to be drawn";
+            return Err(Error::invalid("", format!("{key}.{field}"), reason));
+        }
         Ok(Instance::new(built.volume, world_from_local))
     };
     volumes.iter().enumerate().map(build_one).collect()

@@ -1,0 +1,75 @@
+//! Scenes at the ends of single precision: a render of them ends, and says what it could not do.
+
+mod common;
+
+use std::sync::Arc;
+
+use common::build;
+use flambeau::transport::{Frame, PathSample, PixelSampler, strategy::Preset};
+use glam::UVec2;
+
+/// Samples a small picture and returns its paths.
+fn paths(text: &str, preset: Preset) -> Vec<PathSample> {
+    let scene = common::with_strategy(&build(text), preset.strategy());
+    let size = UVec2::splat(6);
+    let frame = Frame { scene: Arc::new(scene), size, seed: 0 };
+    (0..size.x * size.y).map(|i| frame.sample(UVec2::new(i % size.x, i / size.x), 0)).collect()
+}
+
+const NOISE: &str = r#"
+    [camera]
+    position = [0, -4, 0]
+    target = [0, 0, 0]
+    [environment]
+    radiance = 1.0
+    [[volume]]
+    shape = "noise"
+    half_size = 1.0
+    frequency = 2.0
+    contrast = 5.0
+    albedo = 0.0
+"#;
+
+#[test]
+fn enormous_densities_end() {
+    for scale in ["1e9", "1e12", "1e30", "3e38"] {
+        for preset in Preset::ALL {
+            for path in paths(&format!("{NOISE}density.scale = {scale}\n"), preset) {
+                assert!(path.tracking_steps < 10_000_000, "{scale} {preset}");
+            }
+        }
+    }
+}
+
+/// Sparks that the probing chords miss are not sampled without bound.
+#[test]
+fn tiny_bright_sparks_cost_little() {
+    let text = format!(
+        "{NOISE}density.scale = 1.0\n[volume.emission]\nmode = \"ramp\"\n\
+         stops = [[0, 1e-20, 1e-20, 1e-20], [0.97, 1e-20, 1e-20, 1e-20], [1, 1, 1, 1]]\n"
+    );
+    for preset in Preset::ALL {
+        let steps: u32 = paths(&text, preset).iter().map(|path| path.tracking_steps).sum();
+        assert!(steps < 36 * 1000, "{preset}: {steps}");
+    }
+}
+
+#[test]
+fn placements_that_cannot_be_undone_are_refused_by_name() {
+    for scale in ["1e-30", "1e30"] {
+        let text = format!("{NOISE}density.scale = 1.0\nscale = {scale}\n");
+        let folder = std::path::Path::new(".");
+        let result = flambeau::scene::parse(&text, "extreme", folder, &Default::default())
+            .and_then(|settings| {
+                let cache = flambeau::scene::VolumeCache::default();
+                flambeau::scene::build(&settings, &cache, flambeau::error::NO_PROGRESS)
+            });
+        if let Err(error) = result {
+            assert!(error.to_string().contains("volume.0.scale"), "{error}");
+        } else {
+            for path in paths(&text, Preset::Full) {
+                assert!(path.beauty().is_finite(), "{scale}");
+            }
+        }
+    }
+}
