@@ -16,6 +16,7 @@
 //! | [`transport`] | how light moves: read [`transport::path`] first, then [`transport::tracking`] |
 //! | [`light`], [`surface`], [`volume`] | what emits, what reflects, what fills space |
 //! | [`sampling`], [`math`] | samplers with their densities, MIS weights; rays, boxes, random numbers |
+//! | [`files`] | writing a file whole or not at all, telling its states apart |
 //! | [`error`] | what can go wrong, in words |
 //!
 //! # Conventions
@@ -39,6 +40,7 @@
 pub mod app;
 pub mod cli;
 pub mod error;
+pub mod files;
 pub mod image;
 pub mod light;
 pub mod math;

@@ -123,6 +123,7 @@ fn render_writes_every_format_and_the_figures() {
         "paths",
         "tracking_steps",
         "non_finite_samples",
+        "guard_hits",
         "strategy",
         "version",
     ];
@@ -134,6 +135,7 @@ fn render_writes_every_format_and_the_figures() {
     assert_eq!((&stats["width"], &stats["threads"]), (&40.into(), &2.into()));
     assert_eq!(stats["paths"], 40 * 30 * 4);
     assert_eq!(stats["non_finite_samples"], 0);
+    assert_eq!(stats["guard_hits"], 0);
     assert_eq!(stats["strategy"]["majorant_boost"], true);
     for channel in 0..3 {
         let mean = values.iter().skip(channel).step_by(3).map(|&v| f64::from(v)).sum::<f64>();
@@ -261,11 +263,71 @@ fn a_resumed_render_is_the_uninterrupted_one() {
     assert!(!place.path("x.exr").exists());
 }
 
+/// A snapshot knows the files it was rendered from, not only their names.
+#[test]
+fn a_changed_volume_is_not_resumed() {
+    let place = Place::new();
+    let assets = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/torch_hd.vdb");
+    let bytes = std::fs::read(assets).unwrap();
+    std::fs::write(place.path("fire.vdb"), &bytes).unwrap();
+    let scene = "[film]\nsize = [8, 6]\n[[volume]]\nfile = \"fire.vdb\"\n";
+    std::fs::write(place.path("fire.toml"), scene).unwrap();
+    place.succeed(&["render", "fire.toml", "-o", "fire.exr", "--spp", "1"]);
+    let header = read_info(&place.path("fire.exr")).unwrap().header.unwrap();
+    assert_eq!(header.files.len(), 1);
+    assert_eq!(header.files[0].bytes, bytes.len() as u64);
+    let resume = ["render", "fire.toml", "-o", "more.exr", "--spp", "2", "--resume", "fire.exr"];
+
+    let mut other = bytes.clone();
+    *other.last_mut().unwrap() ^= 1;
+    std::fs::write(place.path("fire.vdb"), &other).unwrap();
+    let (code, _, stderr) = place.run(&resume);
+    assert_eq!(code, 1, "{stderr}");
+    assert!(stderr.contains("fire.vdb has other content"), "{stderr}");
+    std::fs::write(place.path("fire.vdb"), &bytes[1..]).unwrap();
+    let (code, _, stderr) = place.run(&resume);
+    assert_eq!(code, 1, "{stderr}");
+    assert!(stderr.contains(&format!("had {} bytes", bytes.len())), "{stderr}");
+    assert!(!place.path("more.exr").exists());
+
+    std::fs::write(place.path("fire.vdb"), &bytes).unwrap();
+    place.succeed(&resume);
+}
+
+/// Messages that nobody can read do not keep the picture from being written.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_standard_error_stops_nothing() {
+    let place = Place::new();
+    let status = |arguments: &[&str]| {
+        let full = std::fs::File::options().write(true).open("/dev/full").unwrap();
+        let mut command = std::process::Command::new(env!("CARGO_BIN_EXE_flambeau"));
+        command.current_dir(place.0.path()).args(arguments).stderr(full).status().unwrap().code()
+    };
+    // A bare volume has its guesses told, and without --spp there is one more message.
+    let volume = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/plume.vdb");
+    assert_eq!(status(&["render", volume, "-o", "out.npy", "--size", "4x3"]), Some(0));
+    assert_eq!(npy(&place.path("out.npy")).0, [3, 4, 3]);
+    assert_eq!(status(&["render", "absent.toml", "-o", "out.npy"]), Some(1));
+}
+
 /// Ctrl-C in the middle: what there is is written, and going on from it misses nothing.
 #[cfg(unix)]
 #[test]
 fn an_interrupt_writes_what_there_is() {
-    use rustix::process::{Pid, Signal, kill_process};
+    stop_with(rustix::process::Signal::INT);
+}
+
+/// Render farms end programs with another signal.
+#[cfg(unix)]
+#[test]
+fn a_request_to_end_writes_what_there_is() {
+    stop_with(rustix::process::Signal::TERM);
+}
+
+#[cfg(unix)]
+fn stop_with(signal: rustix::process::Signal) {
+    use rustix::process::{Pid, kill_process};
     use std::process::{Command, Stdio};
     use std::time::{Duration, Instant};
 
@@ -277,7 +339,7 @@ fn an_interrupt_writes_what_there_is() {
         .spawn()
         .unwrap();
     std::thread::sleep(Duration::from_millis(700));
-    kill_process(Pid::from_child(&child), Signal::INT).unwrap();
+    kill_process(Pid::from_child(&child), signal).unwrap();
     let start = Instant::now();
     let status = child.wait().unwrap();
     assert_eq!(status.code(), Some(130));
@@ -320,6 +382,8 @@ fn exit_codes_tell_failure_from_wrong_usage() {
         assert!(stderr.starts_with("flambeau: "), "{arguments:?}: {stderr}");
     }
     let usage: &[&[&str]] = &[
+        &["render", "scene.toml", "-o", "x.exr", "--seed", "9007199254740992"],
+        &["render", "scene.toml", "-o", "x.exr", "--set", "film.seed=9007199254740992"],
         &["render", "scene.toml"],
         &["render", "scene.toml", "-o", "x.jpg"],
         &["render", "scene.toml", "-o", "x.exr", "--size", "12"],
@@ -338,6 +402,8 @@ fn exit_codes_tell_failure_from_wrong_usage() {
         assert_eq!(code, 2, "{arguments:?}: {stderr}");
         assert!(!stderr.is_empty());
     }
+    let (_, _, stderr) = place.run(usage[0]);
+    assert!(stderr.contains("9007199254740991"), "{stderr}");
     for arguments in [&["--help"][..], &["--version"], &["render", "--help"]] {
         place.succeed(arguments);
     }
@@ -379,6 +445,11 @@ fn info_tells_what_is_in_a_file() {
     for part in ["density", "voxel size", "range", "active voxels", "bounds", "transform"] {
         assert!(volume.contains(part), "{part} in {volume}");
     }
+    assert!(place.succeed(&["info", "builtin:torch"]).starts_with("Scene"));
+    assert!(place.succeed(&["info", "builtin:torch_hd"]).starts_with("OpenVDB"));
+    let (code, _, stderr) = place.run(&["info", "builtin:nothing"]);
+    assert_eq!(code, 1);
+    assert!(stderr.contains("builtin:torch_hd"), "{stderr}");
 }
 
 /// The replayed path is the one that was rendered: at one sample per pixel the picture is made of

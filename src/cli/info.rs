@@ -24,12 +24,7 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
     let ending = Path::new(file).extension().and_then(|ending| ending.to_str());
     let text = match ending.unwrap_or_default().to_ascii_lowercase().as_str() {
         "exr" => snapshot(&read_info(Path::new(file))?),
-        "toml" => summary(&scene::load(file)?),
-        // An embedded name may be that of a volume or of a scene.
-        _ if file.starts_with("builtin:") => match volume(file) {
-            Ok(text) => text,
-            Err(_) => summary(&scene::load(file)?),
-        },
+        _ if scene::is_scene(file) => summary(&scene::load(file)?),
         _ => volume(file)?,
     };
     print(&text)?;
@@ -97,6 +92,10 @@ fn snapshot(info: &Info) -> String {
     let mut report = Report::default();
     report.title(&format!("EXR, {} x {} pixels", info.size.x, info.size.y));
     report.row("layers", layers(&info.channels));
+    if info.parts != 1 {
+        let note = format!("it has {} parts; this is about the first", info.parts);
+        report.row("note", note);
+    }
     let Some(header) = &info.header else {
         report.row("note", "not written by Flambeau, so it cannot be continued");
         return report.0;
@@ -104,9 +103,13 @@ fn snapshot(info: &Info) -> String {
     report.row("version", &header.version);
     report.row("samples", format!("{} per pixel", info.samples));
     report.row("seed", header.seed.to_string());
+    for file in &header.files {
+        report.row("file", format!("{}, {} bytes, FNV-1a {}", file.name, file.bytes, file.hash));
+    }
     report.row("paths", info.totals.paths.to_string());
     report.row("steps", info.totals.tracking_steps.to_string());
     report.row("not finite", info.totals.non_finite.to_string());
+    report.row("cut by guard", info.totals.guard_hits.to_string());
     report.row("wall time", format!("{:.2} s", header.wall_seconds));
     let (setup, render) = (header.cpu_seconds_setup, header.cpu_seconds_render);
     report.row("CPU time", format!("{setup:.2} s setup, {render:.2} s rendering"));

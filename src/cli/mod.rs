@@ -91,7 +91,7 @@ pub fn run() -> ExitCode {
         None => open_window(arguments.scene),
     };
     let exit = result.unwrap_or_else(|refusal| {
-        eprintln!("flambeau: {}", refusal.error);
+        warn(&refusal.error.to_string());
         refusal.exit
     });
     ExitCode::from(exit as u8)
@@ -105,9 +105,9 @@ fn open_window(scene: Option<String>) -> Result<Exit, Refusal> {
 
 #[cfg(not(feature = "gui"))]
 fn open_window(_: Option<String>) -> Result<Exit, Refusal> {
-    eprintln!(
-        "flambeau: this build has no window; use `flambeau render SCENE -o OUT.exr`, or build with \
-         the feature `gui`"
+    warn(
+        "this build has no window; use `flambeau render SCENE -o OUT.exr`, or build with the \
+         feature `gui`",
     );
     Ok(Exit::WrongUsage)
 }
@@ -121,6 +121,13 @@ fn print(text: &str) -> Result<(), Refusal> {
         }
         _ => Ok(()),
     }
+}
+
+/// Says something on standard error. Where that is closed or full there is nobody to tell, and the
+/// work goes on.
+fn warn(text: &str) {
+    use std::io::Write;
+    let _ = writeln!(std::io::stderr().lock(), "flambeau: {text}");
 }
 
 #[cfg(test)]

@@ -45,6 +45,11 @@ impl Output {
         &self.path
     }
 
+    /// Whether it can be continued.
+    pub fn is_snapshot(&self) -> bool {
+        self.format == Format::Exr
+    }
+
     /// Fails early where it could not be written in the end.
     pub fn check_folder(&self) -> Result<()> {
         check_folder(&self.path)

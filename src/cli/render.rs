@@ -13,12 +13,13 @@ use super::cpu_time::process_seconds;
 use super::outputs::{Output, check_folder, write_all};
 use super::scene_source::SceneArguments;
 use super::stats::{Spent, Stats};
-use super::{Exit, Refusal};
+use super::{Exit, Refusal, warn};
 use crate::error::{Error, Result};
+use crate::files::Fingerprint;
 use crate::image::exr::{Header, Snapshot, read_snapshot};
 use crate::render::estimate::samples_per_pixel;
 use crate::render::schedule::Limits;
-use crate::render::{Film, FilmStats, Headless, Job, render_headless};
+use crate::render::{Failure, Film, FilmStats, Headless, Job, render_headless};
 use crate::scene::{self, Settings, VolumeCache};
 use crate::transport::Frame;
 
@@ -65,8 +66,12 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
     let mut settings = arguments.scene.settings(&cache, &go_on)?;
     let limits = limits(arguments, &mut settings);
     check_folders(arguments)?;
+    let files = match arguments.resume.is_some() || writes_snapshot(arguments) {
+        true => scene::fingerprints(&settings)?,
+        false => Vec::new(),
+    };
     let resumed = match &arguments.resume {
-        Some(path) => Some(resume(path, &settings)?),
+        Some(path) => Some(resume(path, &settings, &files)?),
         None => None,
     };
     let scene = scene::build(&settings, &cache, &go_on)?;
@@ -86,7 +91,7 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
         cpu_setup,
         cpu_render: process_seconds() - cpu_setup,
     });
-    finish(arguments, &settings, &render, spent)
+    finish(arguments, &settings, files, &render, spent)
 }
 
 /// When to stop, after the command line, the scene and the default, in this order. The number of
@@ -96,9 +101,9 @@ fn limits(arguments: &Arguments, settings: &mut Settings) -> Limits {
         (Some(spp), _, _) => spp,
         (None, Some(_), _) => 0,
         (None, None, 0) => {
-            eprintln!(
-                "flambeau: rendering {DEFAULT_SPP} samples per pixel; --spp or --time says otherwise"
-            );
+            warn(&format!(
+                "rendering {DEFAULT_SPP} samples per pixel; --spp or --time says otherwise"
+            ));
             DEFAULT_SPP
         }
         (None, None, spp) => spp,
@@ -113,8 +118,12 @@ fn check_folders(arguments: &Arguments) -> Result<()> {
     arguments.stats.as_deref().map_or(Ok(()), check_folder)
 }
 
-/// The snapshot to go on from, if it is one of this scene.
-fn resume(path: &Path, settings: &Settings) -> Result<Snapshot> {
+fn writes_snapshot(arguments: &Arguments) -> bool {
+    arguments.output.iter().any(Output::is_snapshot)
+}
+
+/// The snapshot to go on from, if it is one of this scene with the `files` it has now.
+fn resume(path: &Path, settings: &Settings, files: &[Fingerprint]) -> Result<Snapshot> {
     let snapshot = read_snapshot(path)?;
     let name = path.display().to_string();
     let text = &snapshot.header.scene;
@@ -126,14 +135,41 @@ fn resume(path: &Path, settings: &Settings) -> Result<Snapshot> {
         );
         return Err(Error::invalid(name, "", reason));
     }
+    check_files(&name, &snapshot.header.files, files)?;
     if snapshot.header.version != env!("CARGO_PKG_VERSION") {
-        eprintln!(
-            "flambeau: {name} was begun with version {}; its samples and those of this version may \
-             differ",
+        warn(&format!(
+            "{name} was begun with version {}; its samples and those of this version may differ",
             snapshot.header.version
-        );
+        ));
     }
     Ok(snapshot)
+}
+
+/// Refuses files that have changed since the snapshot `name` was rendered from them.
+fn check_files(name: &str, theirs: &[Fingerprint], ours: &[Fingerprint]) -> Result<()> {
+    for file in ours {
+        let Some(then) = theirs.iter().find(|then| then.name == file.name) else {
+            warn(&format!(
+                "{name} does not say what {} held when it was rendered; if that has changed since, \
+                 two pictures are being mixed",
+                file.name
+            ));
+            continue;
+        };
+        if then != file {
+            let change = match then.bytes == file.bytes {
+                true => "has other content".to_owned(),
+                false => format!("had {} bytes and now has {}", then.bytes, file.bytes),
+            };
+            let reason = format!(
+                "{} {change} since the snapshot was rendered, and going on would mix two pictures. \
+                 Render anew, or put the old file back",
+                file.name
+            );
+            return Err(Error::invalid(name, "", reason));
+        }
+    }
+    Ok(())
 }
 
 /// The first line in which two settings differ, the number of samples apart.
@@ -169,7 +205,8 @@ fn spent_before(header: &Header) -> Spent {
     }
 }
 
-/// A flag that Ctrl-C sets; a second one ends the program at once.
+/// A flag that Ctrl-C sets, and so does a polite request to end, as render farms and terminals
+/// that close send it; a second one ends the program at once.
 fn listen_for_interrupt() -> Result<Arc<AtomicBool>> {
     let interrupt = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&interrupt);
@@ -208,6 +245,7 @@ fn show_progress(job: Job, interrupt: &AtomicBool) -> Result<Headless> {
 fn finish(
     arguments: &Arguments,
     settings: &Settings,
+    files: Vec<Fingerprint>,
     render: &Headless,
     spent: Spent,
 ) -> Result<Exit, Refusal> {
@@ -222,6 +260,7 @@ fn finish(
         wall_seconds: spent.wall,
         cpu_seconds_setup: spent.cpu_setup,
         cpu_seconds_render: spent.cpu_render,
+        files,
     };
     let figures = render.pool.install(|| FilmStats::of(film));
     let written = render.pool.install(|| write_all(&arguments.output, film, &header));
@@ -232,9 +271,18 @@ fn finish(
     written?;
     report(arguments, render, &figures);
     if let Some(failure) = &render.failure {
-        return Err(Error::invalid("", "", failure.to_string()).into());
+        return Err(Error::invalid("", "", failed(arguments, settings, failure)).into());
     }
     Ok(if render.interrupted { Exit::Interrupted } else { Exit::Done })
+}
+
+/// What failed, and the command that follows the very path.
+fn failed(arguments: &Arguments, settings: &Settings, failure: &Failure) -> String {
+    let scene = arguments.scene.in_words(settings);
+    match failure.replay_options() {
+        Some(path) => format!("{failure} (`flambeau replay {scene} {path}` follows that path)"),
+        None => failure.to_string(),
+    }
 }
 
 fn report(arguments: &Arguments, render: &Headless, figures: &FilmStats) {
@@ -242,17 +290,17 @@ fn report(arguments: &Arguments, render: &Headless, figures: &FilmStats) {
     let noise = figures.noise.map_or(String::new(), |n| format!(", noise {:.2} %", n * 100.0));
     let names: Vec<String> =
         arguments.output.iter().map(|output| output.path().display().to_string()).collect();
-    eprintln!(
-        "flambeau: {}{:.4} samples per pixel in {:.1} s{noise}: {}",
+    warn(&format!(
+        "{}{:.4} samples per pixel in {:.1} s{noise}: {}",
         if render.interrupted { "interrupted after " } else { "" },
         figures.samples_per_pixel,
         render.seconds,
         names.join(", ")
-    );
+    ));
     if totals.non_finite > 0 {
-        eprintln!("flambeau: {} samples were not finite and count as black", totals.non_finite);
+        warn(&format!("{} samples were not finite and count as black", totals.non_finite));
     }
     if totals.guard_hits > 0 {
-        eprintln!("flambeau: {} paths were cut by the guard", totals.guard_hits);
+        warn(&format!("{} paths were cut by the guard", totals.guard_hits));
     }
 }

@@ -3,8 +3,9 @@
 use clap::Args;
 use glam::UVec2;
 
-use super::Refusal;
+use super::{Refusal, warn};
 use crate::error::{Progress, Result};
+use crate::scene::settings::MAX_SEED;
 use crate::scene::{self, Overrides, Settings, VolumeCache};
 use crate::transport::strategy::Preset;
 
@@ -21,7 +22,7 @@ pub struct SceneArguments {
     #[arg(long, value_name = "KEY=VALUE")]
     set: Vec<String>,
     /// Another seed gives the same picture with other noise.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=MAX_SEED))]
     seed: Option<u64>,
     /// Width and height in pixels.
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
@@ -34,7 +35,7 @@ impl SceneArguments {
     pub fn settings(&self, cache: &VolumeCache, progress: Progress) -> Result<Settings, Refusal> {
         let opened = scene::open(&self.scene, &Overrides::default(), cache, progress)?;
         for note in &opened.notes {
-            eprintln!("flambeau: {note}");
+            warn(note);
         }
         let overrides = Overrides { preset: self.preset, set: self.set.clone() };
         let mut settings = scene::apply(&opened.settings, &overrides).map_err(Refusal::usage)?;
@@ -46,6 +47,27 @@ impl SceneArguments {
         }
         Ok(settings)
     }
+
+    /// The arguments that lead another command to these `settings`, ready for a shell.
+    pub fn in_words(&self, settings: &Settings) -> String {
+        let mut words = vec![quoted(&self.scene)];
+        if let Some(preset) = self.preset {
+            words.push(format!("--preset {}", preset.name()));
+        }
+        words.extend(self.set.iter().map(|assignment| format!("--set {}", quoted(assignment))));
+        let [width, height] = settings.film.size;
+        words.push(format!("--size {width}x{height} --seed {}", settings.film.seed));
+        words.join(" ")
+    }
+}
+
+/// A word as a shell takes it literally.
+fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./:,=+@%".contains(c);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        return word.to_owned();
+    }
+    format!("'{}'", word.replace('\'', r"'\''"))
 }
 
 fn parse_size(text: &str) -> Result<UVec2, String> {
@@ -62,6 +84,53 @@ fn parse_size(text: &str) -> Result<UVec2, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[derive(clap::Parser)]
+    struct Line {
+        #[command(flatten)]
+        scene: SceneArguments,
+    }
+
+    /// Splits a line that a shell would split, without running one.
+    fn split(line: &str) -> Vec<String> {
+        let mut words = vec![String::new()];
+        let (mut is_quoted, mut letters) = (false, line.chars());
+        while let Some(letter) = letters.next() {
+            match letter {
+                '\'' => is_quoted = !is_quoted,
+                '\\' if !is_quoted => words.last_mut().unwrap().extend(letters.next()),
+                ' ' if !is_quoted => words.push(String::new()),
+                other => words.last_mut().unwrap().push(other),
+            }
+        }
+        words
+    }
+
+    #[test]
+    fn arguments_in_words_lead_to_the_same_settings() {
+        let given = [
+            "x",
+            "builtin:torch",
+            "--preset",
+            "baseline",
+            "--set",
+            "film.size=[31, 17]",
+            "--set",
+            "volume.0.name=\"it's a fire\"",
+            "--seed",
+            "77",
+        ];
+        let settings = |line: &Line| {
+            let cache = VolumeCache::default();
+            line.scene.settings(&cache, crate::error::NO_PROGRESS).map_err(|e| e.error).unwrap()
+        };
+        let line = <Line as clap::Parser>::parse_from(given);
+        let expected = settings(&line);
+        let words = line.scene.in_words(&expected);
+        assert!(words.ends_with("--size 31x17 --seed 77"), "{words}");
+        let again = std::iter::once("x".to_owned()).chain(split(&words));
+        assert_eq!(settings(&<Line as clap::Parser>::parse_from(again)), expected);
+    }
 
     #[test]
     fn sizes_are_two_numbers() {

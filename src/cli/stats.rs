@@ -6,7 +6,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use crate::error::{Error, Result};
-use crate::image::replace_file;
+use crate::files;
 use crate::render::{Film, FilmStats};
 use crate::transport::strategy::Strategy;
 
@@ -51,6 +51,7 @@ pub struct Stats {
     paths: u64,
     tracking_steps: u64,
     non_finite_samples: u64,
+    guard_hits: u64,
     strategy: Strategy,
     version: &'static str,
 }
@@ -83,6 +84,7 @@ impl Stats {
             paths: film.totals.paths,
             tracking_steps: film.totals.tracking_steps,
             non_finite_samples: film.totals.non_finite,
+            guard_hits: film.totals.guard_hits,
             strategy,
             version: env!("CARGO_PKG_VERSION"),
         }
@@ -92,6 +94,6 @@ impl Stats {
     pub fn write(&self, path: &Path) -> Result<()> {
         let json = serde_json::to_string_pretty(self)
             .map_err(|e| Error::invalid(path.display().to_string(), "", e.to_string()))?;
-        replace_file(path, |file| writeln!(file, "{json}").map_err(|e| Error::io(path, e)))
+        files::replace(path, |file| writeln!(file, "{json}").map_err(|e| Error::io(path, e)))
     }
 }

@@ -1,67 +1,41 @@
 //! Snapshots: one-part EXR files with the picture, its layers, and all that is needed to go on.
 
-use std::io::BufWriter;
+use std::fs::File;
+use std::io::{BufReader, BufWriter};
 use std::path::Path;
 
-use exr::meta::attribute::AttributeValue;
+use exr::block::UncompressedBlock;
+use exr::block::reader::{ChunksReader, Reader};
+use exr::meta::header::Header as Part;
 use exr::prelude::{
-    AnyChannel, AnyChannels, Compression, Encoding, FlatSamples, Image, Layer, LayerAttributes,
-    LineOrder, MetaData, ReadChannels, ReadLayers, SmallVec, Text, WritableImage,
+    AnyChannel, AnyChannels, Compression, Encoding, FlatSamples, Image, Layer, LineOrder, MetaData,
+    SampleType, SmallVec, Vec2, WritableImage,
 };
 use glam::UVec2;
 
+pub use super::exr_header::Header;
+use super::exr_header::{Attributes, attributes};
 use super::exr_layout::{SAMPLES, channel_names, push_pixel, state_from, state_names, words_at};
-use super::replace_file;
 use crate::error::{Error, Result};
-use crate::render::estimate::samples_per_pixel;
+use crate::files;
 use crate::render::film::{Film, Totals};
-
-/// What a snapshot says about itself.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Header {
-    /// The whole setting as a scene file, with absolute file names.
-    pub scene: String,
-    /// The sampling strategy as TOML.
-    pub strategy: String,
-    /// The seed of all samples.
-    pub seed: u64,
-    /// The version of Flambeau that wrote it.
-    pub version: String,
-    /// Wall-clock seconds spent on the picture, over all its sessions.
-    pub wall_seconds: f64,
-    /// CPU seconds spent on building the scene.
-    pub cpu_seconds_setup: f64,
-    /// CPU seconds spent on rendering.
-    pub cpu_seconds_render: f64,
-}
 
 /// What the first bytes of an EXR say, whoever wrote it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Info {
-    /// Width and height of the first part.
+    /// How many parts it has; the rest is about the first.
+    pub parts: usize,
+    /// Width and height.
     pub size: UVec2,
-    /// Channels of the first part.
+    /// Names of the channels.
     pub channels: Vec<String>,
     /// The header, if Flambeau wrote it.
     pub header: Option<Header>,
     /// Mean samples of a pixel, if Flambeau wrote it.
     pub samples: f64,
-    /// Counts over the whole film.
+    /// Counts over the whole film, as the file claims.
     pub totals: Totals,
 }
-
-const SCENE: &str = "flambeau.scene";
-const STRATEGY: &str = "flambeau.strategy";
-const SEED: &str = "flambeau.seed";
-const SAMPLES_PER_PIXEL: &str = "flambeau.samples";
-const VERSION: &str = "flambeau.version";
-const WALL_SECONDS: &str = "flambeau.wallSeconds";
-const CPU_SECONDS_SETUP: &str = "flambeau.cpuSecondsSetup";
-const CPU_SECONDS_RENDER: &str = "flambeau.cpuSecondsRender";
-const PATHS: &str = "flambeau.paths";
-const TRACKING_STEPS: &str = "flambeau.trackingSteps";
-const NON_FINITE: &str = "flambeau.nonFiniteSamples";
-const GUARD_HITS: &str = "flambeau.guardHits";
 
 /// Writes `film` as a snapshot.
 ///
@@ -71,7 +45,7 @@ pub fn write(path: &Path, film: &Film, header: &Header) -> Result<()> {
     let size = film.size();
     let names = channel_names();
     let pixels = size.x as usize * size.y as usize;
-    let mut planes = vec![Vec::with_capacity(pixels); names.len()];
+    let mut planes: Vec<Vec<f32>> = names.iter().map(|_| Vec::with_capacity(pixels)).collect();
     for y in 0..size.y {
         for x in 0..size.x {
             push_pixel(film, UVec2::new(x, y), &mut planes);
@@ -80,17 +54,15 @@ pub fn write(path: &Path, film: &Film, header: &Header) -> Result<()> {
     let channels: SmallVec<[_; 4]> = std::iter::zip(&names, planes)
         .map(|(name, plane)| AnyChannel::new(name.as_str(), FlatSamples::F32(plane)))
         .collect();
-    let software_name = Some(text(&format!("Flambeau {}", header.version)));
-    let mut attributes = LayerAttributes { software_name, ..LayerAttributes::default() };
-    attributes.other.extend(attribute_list(film, header));
     let encoding = Encoding {
         compression: Compression::ZIP16,
         line_order: LineOrder::Increasing,
         ..Encoding::default()
     };
     let extent = (size.x as usize, size.y as usize);
+    let attributes = attributes(film, header)?;
     let layer = Layer::new(extent, attributes, encoding, AnyChannels::sort(channels));
-    replace_file(path, |file| {
+    files::replace(path, |file| {
         Image::from_layer(layer)
             .write()
             .to_buffered(BufWriter::new(file))
@@ -98,113 +70,42 @@ pub fn write(path: &Path, film: &Film, header: &Header) -> Result<()> {
     })
 }
 
-fn attribute_list(film: &Film, header: &Header) -> Vec<(Text, AttributeValue)> {
-    let words = |value: &str| AttributeValue::Text(text(value));
-    let count = |value: u64| AttributeValue::Text(text(&value.to_string()));
-    let entries = [
-        (SCENE, words(&header.scene)),
-        (STRATEGY, words(&header.strategy)),
-        (SEED, count(header.seed)),
-        (VERSION, words(&header.version)),
-        (SAMPLES_PER_PIXEL, AttributeValue::F64(samples_per_pixel(film))),
-        (WALL_SECONDS, AttributeValue::F64(header.wall_seconds)),
-        (CPU_SECONDS_SETUP, AttributeValue::F64(header.cpu_seconds_setup)),
-        (CPU_SECONDS_RENDER, AttributeValue::F64(header.cpu_seconds_render)),
-        (PATHS, count(film.totals.paths)),
-        (TRACKING_STEPS, count(film.totals.tracking_steps)),
-        (NON_FINITE, count(film.totals.non_finite)),
-        (GUARD_HITS, count(film.totals.guard_hits)),
-    ];
-    entries.into_iter().map(|(name, value)| (text(name), value)).collect()
-}
-
-/// EXR text is bytes; ours are UTF-8.
-fn text(value: &str) -> Text {
-    Text::from_slice_unchecked(value.as_bytes())
-}
-
 /// Reads what `path` says about itself, without its pixels.
 ///
 /// # Errors
 /// When it cannot be read or is no EXR.
 pub fn read_info(path: &Path) -> Result<Info> {
-    let file = std::fs::File::open(path).map_err(|e| Error::io(path, e))?;
-    let data = MetaData::read_from_unbuffered(file, false).map_err(|e| exr_error(path, e))?;
+    info(path, open(path)?.meta_data())
+}
+
+fn open(path: &Path) -> Result<Reader<BufReader<File>>> {
+    let file = File::open(path).map_err(|e| Error::io(path, e))?;
+    exr::block::read(BufReader::new(file), false).map_err(|e| exr_error(path, e))
+}
+
+fn info(path: &Path, data: &MetaData) -> Result<Info> {
     let Some(part) = data.headers.first() else {
         return Err(invalid(path, "", "has no image inside"));
     };
-    let attributes = Attributes { path, other: &part.own_attributes.other };
-    let is_ours = attributes.other.contains_key(text(SCENE).as_slice());
+    let attributes = Attributes::new(path, &part.own_attributes);
     let size = UVec2::new(
         u32::try_from(part.layer_size.x()).map_err(|_| invalid(path, "", "is too wide"))?,
         u32::try_from(part.layer_size.y()).map_err(|_| invalid(path, "", "is too high"))?,
     );
     let mut info = Info {
+        parts: data.headers.len(),
         size,
         channels: part.channels.list.iter().map(|channel| channel.name.to_string()).collect(),
         header: None,
         samples: 0.0,
         totals: Totals::default(),
     };
-    if is_ours {
+    if attributes.are_ours() {
         info.header = Some(attributes.header()?);
         info.totals = attributes.totals()?;
-        info.samples = attributes.float(SAMPLES_PER_PIXEL)?;
+        info.samples = attributes.samples()?;
     }
     Ok(info)
-}
-
-/// Custom attributes by name.
-struct Attributes<'a> {
-    path: &'a Path,
-    other: &'a std::collections::HashMap<Text, AttributeValue>,
-}
-
-impl Attributes<'_> {
-    fn header(&self) -> Result<Header> {
-        Ok(Header {
-            scene: self.text(SCENE)?,
-            strategy: self.text(STRATEGY)?,
-            seed: self.count(SEED)?,
-            version: self.text(VERSION)?,
-            wall_seconds: self.float(WALL_SECONDS)?,
-            cpu_seconds_setup: self.float(CPU_SECONDS_SETUP)?,
-            cpu_seconds_render: self.float(CPU_SECONDS_RENDER)?,
-        })
-    }
-
-    fn totals(&self) -> Result<Totals> {
-        Ok(Totals {
-            paths: self.count(PATHS)?,
-            tracking_steps: self.count(TRACKING_STEPS)?,
-            non_finite: self.count(NON_FINITE)?,
-            guard_hits: self.count(GUARD_HITS)?,
-        })
-    }
-
-    fn text(&self, name: &str) -> Result<String> {
-        match self.other.get(text(name).as_slice()) {
-            Some(AttributeValue::Text(value)) => String::from_utf8(value.as_slice().to_vec())
-                .map_err(|_| invalid(self.path, name, "is not UTF-8 text")),
-            _ => Err(self.missing(name)),
-        }
-    }
-
-    fn count(&self, name: &str) -> Result<u64> {
-        let value = self.text(name)?;
-        value.parse().map_err(|_| invalid(self.path, name, format!("{value:?} is not a count")))
-    }
-
-    fn float(&self, name: &str) -> Result<f64> {
-        match self.other.get(text(name).as_slice()) {
-            Some(AttributeValue::F64(value)) if value.is_finite() => Ok(*value),
-            _ => Err(self.missing(name)),
-        }
-    }
-
-    fn missing(&self, name: &str) -> Error {
-        invalid(self.path, name, "this attribute is missing or of another type")
-    }
 }
 
 /// A snapshot read back.
@@ -221,58 +122,126 @@ pub struct Snapshot {
 /// # Errors
 /// When it cannot be read, was not written by [`write()`], or is damaged.
 pub fn read_snapshot(path: &Path) -> Result<Snapshot> {
-    let info = read_info(path)?;
+    let reader = open(path)?;
+    let info = info(path, reader.meta_data())?;
     let Some(header) = info.header else {
         let reason = "this EXR was not written by Flambeau, so there is nothing to continue";
         return Err(invalid(path, "", reason));
     };
-    let mut wanted = state_names();
-    wanted.push(SAMPLES.to_owned());
-    if let Some(missing) = wanted.iter().find(|name| !info.channels.contains(name)) {
-        let reason = "this channel is missing; another program may have dropped it, and without \
-                      it the render cannot be continued";
-        return Err(invalid(path, missing.as_str(), reason));
+    if info.parts != 1 {
+        let reason = format!(
+            "it has {} parts, and a snapshot has one; another program may have added to it, so \
+             that it cannot be continued",
+            info.parts
+        );
+        return Err(invalid(path, "", reason));
     }
     let mut film = Film::new(info.size)?;
-    let planes = read_planes(path, info.size, &wanted)?;
-    let planes: Vec<&[f32]> = planes.iter().map(Vec::as_slice).collect();
-    let (counts, states) = (planes[wanted.len() - 1], &planes[..wanted.len() - 1]);
-    for y in 0..info.size.y {
-        for x in 0..info.size.x {
-            let index = y as usize * info.size.x as usize + x as usize;
-            let (count, sums) =
-                state_from(counts[index], words_at(states, index)).ok_or_else(|| {
-                    invalid(path, "state", format!("pixel {x},{y} holds impossible sums"))
-                })?;
-            film.restore(UVec2::new(x, y), count, &sums);
-        }
+    let paths = read_state(path, reader, &mut film)?;
+    // What can be counted is not taken on trust.
+    film.totals = Totals { paths, ..info.totals };
+    if film.totals.non_finite > paths || film.totals.guard_hits > paths {
+        return Err(invalid(path, "state", "it claims more bad paths than there are paths"));
     }
-    film.totals = info.totals;
     Ok(Snapshot { film, header })
 }
 
-/// The float planes of the wanted channels, in their order.
-fn read_planes(path: &Path, size: UVec2, wanted: &[String]) -> Result<Vec<Vec<f32>>> {
-    let image = exr::prelude::read()
-        .no_deep_data()
-        .largest_resolution_level()
-        .all_channels()
-        .first_valid_layer()
-        .all_attributes()
-        .from_file(path)
-        .map_err(|e| exr_error(path, e))?;
-    let mut channels = image.layer_data.channel_data.list;
-    let pixels = size.x as usize * size.y as usize;
-    let take = |name: &String| {
-        let found = channels.iter_mut().find(|channel| channel.name.eq(name.as_str()));
-        match found
-            .map(|channel| std::mem::replace(&mut channel.sample_data, FlatSamples::F32(vec![])))
-        {
-            Some(FlatSamples::F32(plane)) if plane.len() == pixels => Ok(plane),
-            _ => Err(invalid(path, name.as_str(), "this channel is not of 32-bit floats")),
+/// Fills `film` from the state of every pixel; returns the number of paths.
+fn read_state(path: &Path, reader: Reader<BufReader<File>>, film: &mut Film) -> Result<u64> {
+    let Some(part) = reader.headers().first() else { return Ok(0) };
+    let mut state = State::new(path, part, film)?;
+    let mut failure = None;
+    let result = reader.filter_chunks(false, |_, tile, _| tile.level_index == Vec2(0, 0)).and_then(
+        |chunks| {
+            chunks.decompress_parallel(false, |data, block| {
+                let restored = match data.headers.first() {
+                    Some(part) => state.restore(part, &block),
+                    None => Ok(()),
+                };
+                restored.map_err(|error| {
+                    failure = Some(error);
+                    exr::error::Error::Aborted
+                })
+            })
+        },
+    );
+    match (failure, result) {
+        (Some(error), _) => Err(error),
+        (None, Err(error)) => Err(exr_error(path, error)),
+        (None, Ok(())) => Ok(state.paths),
+    }
+}
+
+/// Puts the blocks of a file back into a film.
+struct State<'a> {
+    path: &'a Path,
+    film: &'a mut Film,
+    /// For every channel of the file the row that it fills, if it is needed to go on.
+    row_of_channel: Vec<Option<usize>>,
+    /// One line of every channel that is needed, the sample counts last.
+    rows: Vec<Vec<f32>>,
+    paths: u64,
+}
+
+impl<'a> State<'a> {
+    fn new(path: &'a Path, part: &Part, film: &'a mut Film) -> Result<Self> {
+        if part.deep {
+            return Err(invalid(path, "", "it holds deep data, which no snapshot does"));
         }
-    };
-    wanted.iter().map(take).collect()
+        let mut wanted = state_names();
+        wanted.push(SAMPLES.to_owned());
+        let channels = &part.channels.list;
+        for name in &wanted {
+            let Some(channel) = channels.iter().find(|channel| channel.name.eq(name.as_str()))
+            else {
+                let reason = "this channel is missing; another program may have dropped it, and \
+                              without it the render cannot be continued";
+                return Err(invalid(path, name, reason));
+            };
+            if channel.sample_type != SampleType::F32 || channel.sampling != Vec2(1, 1) {
+                return Err(invalid(path, name, "this channel is not of 32-bit floats"));
+            }
+        }
+        let row_of =
+            |name: &exr::prelude::Text| wanted.iter().position(|one| name.eq(one.as_str()));
+        let row_of_channel = channels.iter().map(|channel| row_of(&channel.name)).collect();
+        Ok(Self { path, film, row_of_channel, rows: vec![Vec::new(); wanted.len()], paths: 0 })
+    }
+
+    fn restore(&mut self, part: &Part, block: &UncompressedBlock) -> Result<()> {
+        let (Vec2(left, top), Vec2(width, height)) =
+            (block.index.pixel_position, block.index.pixel_size);
+        let (size, last) = (self.film.size(), self.row_of_channel.len() - 1);
+        if left + width > size.x as usize || top + height > size.y as usize {
+            return Err(invalid(self.path, "", "a block of it lies outside of the picture"));
+        }
+        for line in block.lines(&part.channels) {
+            if let Some(row) = self.row_of_channel[line.location.channel] {
+                self.rows[row].resize(width, 0.0);
+                let read = line.read_samples_into_slice(&mut self.rows[row]);
+                read.map_err(|e| exr_error(self.path, e))?;
+            }
+            if line.location.channel == last {
+                self.restore_line(UVec2::new(left as u32, line.location.position.y() as u32))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Restores the pixels from `first` to the right, out of the rows.
+    fn restore_line(&mut self, first: UVec2) -> Result<()> {
+        let (states, counts) = self.rows.split_at(self.rows.len() - 1);
+        for (index, &count) in counts.iter().flatten().enumerate() {
+            let pixel = UVec2::new(first.x + index as u32, first.y);
+            let Some((count, sums)) = state_from(count, words_at(states, index)) else {
+                let reason = format!("pixel {},{} holds impossible sums", pixel.x, pixel.y);
+                return Err(invalid(self.path, "state", reason));
+            };
+            self.film.restore(pixel, count, &sums);
+            self.paths += u64::from(count);
+        }
+        Ok(())
+    }
 }
 
 fn invalid(path: &Path, field: &str, reason: impl Into<String>) -> Error {
@@ -294,7 +263,10 @@ fn exr_error(path: &Path, error: exr::error::Error) -> Error {
 
 #[cfg(test)]
 mod tests {
+    use exr::prelude::LayerAttributes;
+
     use super::*;
+    use crate::files::Fingerprint;
     use crate::render::synthetic::Uniform;
     use crate::transport::{PathSample, PixelSampler};
 
@@ -323,6 +295,7 @@ mod tests {
             wall_seconds: 1.5,
             cpu_seconds_setup: 0.25,
             cpu_seconds_render: 2.75,
+            files: vec![Fingerprint::of("/home/änne/torch.vdb", &b"voxels"[..]).unwrap()],
         }
     }
 
@@ -344,10 +317,13 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("out.exr");
         write(&path, &film(50), &header()).unwrap();
-        let names: Vec<String> = ["R", "emission.R", "background.R", "direct.R", "indirect.R"]
-            .map(str::to_owned)
-            .to_vec();
-        let planes = read_planes(&path, UVec2::new(37, 19), &names).unwrap();
+        let image = exr::prelude::read_first_flat_layer_from_file(&path).unwrap();
+        let channels = &image.layer_data.channel_data.list;
+        let plane = |name: &str| -> Vec<f32> {
+            let channel = channels.iter().find(|channel| channel.name.eq(name)).unwrap();
+            channel.sample_data.values_as_f32().collect()
+        };
+        let planes = ["R", "emission.R", "background.R", "direct.R", "indirect.R"].map(plane);
         for i in 0..planes[0].len() {
             let sum: f32 = planes[1..].iter().map(|plane| plane[i]).sum();
             assert!((sum - planes[0][i]).abs() <= 1e-6 * planes[0][i].abs(), "pixel {i}");
@@ -376,5 +352,61 @@ mod tests {
         std::fs::write(&path, b"no picture").unwrap();
         assert!(read_info(&path).unwrap_err().to_string().contains("EXR"));
         assert!(read_info(&folder.path().join("absent.exr")).is_err());
+    }
+
+    /// Scripts look for these names; a text named `version` would be lost or refused by readers.
+    #[test]
+    fn attributes_have_plain_names() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("out.exr");
+        write(&path, &film(2), &header()).unwrap();
+        let data = MetaData::read_from_file(&path, true).unwrap();
+        let attributes = &data.headers[0].own_attributes;
+        let mut names: Vec<String> = attributes.other.keys().map(|name| name.to_string()).collect();
+        names.retain(|name| !name.starts_with("flambeau."));
+        names.sort_unstable();
+        let expected = ["cpu_seconds", "samples", "scene", "seed", "strategy", "wall_seconds"];
+        assert_eq!(names, expected);
+        assert_eq!(attributes.software_name.as_ref().unwrap().to_string(), "Flambeau 0.1.0");
+    }
+
+    #[test]
+    fn claims_about_paths_are_checked() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("out.exr");
+        let mut film = film(2);
+        let paths = film.totals.paths;
+        film.totals.paths = u64::MAX;
+        film.totals.tracking_steps = u64::MAX;
+        write(&path, &film, &header()).unwrap();
+        let mut read = read_snapshot(&path).unwrap().film;
+        assert_eq!(read.totals.paths, paths);
+        let sample = PathSample { tracking_steps: 7, ..Default::default() };
+        read.add(UVec2::ZERO, &sample);
+        assert_eq!((read.totals.paths, read.totals.tracking_steps), (paths + 1, u64::MAX));
+
+        film.totals.guard_hits = u64::MAX;
+        write(&path, &film, &header()).unwrap();
+        assert!(read_snapshot(&path).unwrap_err().to_string().contains("bad paths"));
+    }
+
+    #[test]
+    fn a_second_part_is_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("parts.exr");
+        let part = |name: &str, mut attributes: LayerAttributes| {
+            attributes.layer_name = Some(name.into());
+            let plane = AnyChannel::new("Y", FlatSamples::F32(vec![0.5; 4]));
+            let channels = AnyChannels::sort(SmallVec::from_vec(vec![plane]));
+            Layer::new((2, 2), attributes, Encoding::default(), channels)
+        };
+        let ours = attributes(&film(1), &header()).unwrap();
+        let layers = vec![part("first", ours), part("second", LayerAttributes::default())];
+        let window = exr::prelude::IntegerBounds::from_dimensions((2, 2));
+        let image = Image::from_layers(exr::prelude::ImageAttributes::new(window), layers);
+        image.write().to_file(&path).unwrap();
+        assert_eq!(read_info(&path).unwrap().parts, 2);
+        let error = read_snapshot(&path).unwrap_err().to_string();
+        assert!(error.contains("2 parts"), "{error}");
     }
 }

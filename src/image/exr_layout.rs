@@ -121,7 +121,7 @@ pub fn state_from(samples: f32, mut words: [f32; STATE_WORDS]) -> Option<(u32, S
 }
 
 /// Reads the words of one pixel out of the planes.
-pub fn words_at(planes: &[&[f32]], index: usize) -> [f32; STATE_WORDS] {
+pub fn words_at(planes: &[Vec<f32>], index: usize) -> [f32; STATE_WORDS] {
     let mut words = [0.0; STATE_WORDS];
     std::iter::zip(&mut words, planes).for_each(|(word, plane)| *word = plane[index]);
     words

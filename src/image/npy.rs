@@ -6,8 +6,8 @@ use std::path::Path;
 use glam::UVec2;
 use npyz::WriterBuilder;
 
-use super::replace_file;
 use crate::error::{Error, Result};
+use crate::files;
 
 /// Writes linear `pixels` as little-endian float32 of shape height × width × 3, row 0 on top.
 ///
@@ -15,7 +15,7 @@ use crate::error::{Error, Result};
 /// When the system refuses to write.
 pub fn write(path: &Path, size: UVec2, pixels: &[[f32; 4]]) -> Result<()> {
     let shape = [u64::from(size.y), u64::from(size.x), 3];
-    replace_file(path, |file| {
+    files::replace(path, |file| {
         let write = || -> std::io::Result<()> {
             let mut writer = npyz::WriteOptions::<f32>::new()
                 .default_dtype()

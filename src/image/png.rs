@@ -7,9 +7,9 @@ use glam::UVec2;
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder};
 
-use super::replace_file;
 use super::tone::Tone;
 use crate::error::{Error, Result};
+use crate::files;
 use crate::math::Rgb;
 
 /// Writes linear `pixels`, row 0 on top, as 8-bit sRGB.
@@ -19,7 +19,7 @@ use crate::math::Rgb;
 pub fn write(path: &Path, size: UVec2, pixels: &[[f32; 4]], tone: Tone) -> Result<()> {
     let codes: Vec<u8> =
         pixels.iter().flat_map(|&[r, g, b, _]| tone.encode(Rgb::new(r, g, b))).collect();
-    replace_file(path, |file| {
+    files::replace(path, |file| {
         let mut writer = BufWriter::new(file);
         PngEncoder::new(&mut writer)
             .write_image(&codes, size.x, size.y, ExtendedColorType::Rgb8)

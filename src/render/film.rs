@@ -73,14 +73,14 @@ pub struct Totals {
 }
 
 impl Totals {
-    /// The sum of two counts.
+    /// The sum of two counts, or the largest number that fits.
     #[must_use]
     pub fn plus(self, other: Self) -> Self {
         Self {
-            paths: self.paths + other.paths,
-            tracking_steps: self.tracking_steps + other.tracking_steps,
-            non_finite: self.non_finite + other.non_finite,
-            guard_hits: self.guard_hits + other.guard_hits,
+            paths: self.paths.saturating_add(other.paths),
+            tracking_steps: self.tracking_steps.saturating_add(other.tracking_steps),
+            non_finite: self.non_finite.saturating_add(other.non_finite),
+            guard_hits: self.guard_hits.saturating_add(other.guard_hits),
         }
     }
 }

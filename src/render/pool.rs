@@ -36,15 +36,21 @@ pub struct Failure {
     pub message: String,
 }
 
+impl Failure {
+    /// The options of `flambeau replay` that follow the failed path, given a scene, the film's
+    /// size and the seed.
+    pub fn replay_options(&self) -> Option<String> {
+        self.at.map(|(pixel, sample)| format!("--pixel {},{} --sample {sample}", pixel.x, pixel.y))
+    }
+}
+
 impl std::fmt::Display for Failure {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self.at {
-            Some((pixel, sample)) => write!(
-                f,
-                "pixel {},{} failed at sample {sample}: {} \
-                 (`flambeau replay SCENE --pixel {},{} --sample {sample}` follows that path)",
-                pixel.x, pixel.y, self.message, pixel.x, pixel.y
-            ),
+            Some((pixel, sample)) => {
+                let message = &self.message;
+                write!(f, "pixel {},{} failed at sample {sample}: {message}", pixel.x, pixel.y)
+            }
             None => f.write_str(&self.message),
         }
     }
@@ -271,7 +277,8 @@ mod tests {
         assert_eq!(failure.at, Some((UVec2::new(20, 30), 2)));
         assert!(!outcome.complete);
         let text = failure.to_string();
-        assert!(text.contains("--pixel 20,30 --sample 2") && text.contains("on purpose"), "{text}");
+        assert!(text.contains("20,30") && text.contains("on purpose"), "{text}");
+        assert_eq!(failure.replay_options().unwrap(), "--pixel 20,30 --sample 2");
         assert_eq!(film.samples(UVec2::new(20, 30)), 2);
     }
 }

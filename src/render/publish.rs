@@ -35,6 +35,8 @@ pub struct RenderStats {
     pub paths: u64,
     /// Samples that were not finite and count as zero.
     pub non_finite: u64,
+    /// Paths cut by the guard against endless scattering.
+    pub guard_hits: u64,
     /// Relative standard error of the picture, see [`FilmStats::noise`]; none before two samples.
     pub noise: Option<f64>,
     /// Whether the limit is reached.
@@ -100,6 +102,7 @@ pub(crate) fn render_stats(
         tracking_steps: film.totals.tracking_steps,
         paths: film.totals.paths,
         non_finite: film.totals.non_finite,
+        guard_hits: film.totals.guard_hits,
         noise,
         finished,
     }
@@ -149,5 +152,14 @@ mod tests {
             }
         }
         assert_eq!(resolve(&film, &mut Vec::new()), FilmStats::of(&film).noise);
+    }
+
+    #[test]
+    fn bad_paths_are_in_the_figures() {
+        let mut film = Film::new(UVec2::ONE).unwrap();
+        film.add(UVec2::ZERO, &PathSample { guard_hit: true, ..red(1.0) });
+        film.add(UVec2::ZERO, &red(f32::NAN));
+        let stats = render_stats(&film, 0.0, None, false);
+        assert_eq!((stats.paths, stats.guard_hits, stats.non_finite), (2, 1, 1));
     }
 }

@@ -1,8 +1,6 @@
 //! The names of files in scenes: relative in the file, absolute in the settings.
 
 use std::ffi::OsStr;
-use std::fs::File;
-use std::io::{BufWriter, Write};
 use std::path::{Component, Path, PathBuf};
 
 use super::keys;
@@ -69,30 +67,6 @@ pub(super) fn has_extension(path: &Path, extension: &str) -> bool {
     path.extension().and_then(OsStr::to_str).is_some_and(|e| e.eq_ignore_ascii_case(extension))
 }
 
-/// Writes `text` to `path` as a whole or not at all: to a temporary name beside it, then renamed.
-pub(super) fn write_whole(path: &Path, text: &str) -> Result<()> {
-    let folder = folder_of(path)?;
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".flambeau-").suffix(".tmp");
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        builder.permissions(std::fs::Permissions::from_mode(0o666));
-    }
-    let mut file = builder.tempfile_in(folder).map_err(|e| Error::io(path, e))?;
-    write_synced(file.as_file_mut(), text).map_err(|e| Error::io(path, e))?;
-    file.persist(path).map_err(|e| Error::io(path, e.error))?;
-    Ok(())
-}
-
-fn write_synced(file: &mut File, text: &str) -> std::io::Result<()> {
-    let mut writer = BufWriter::new(&mut *file);
-    writer.write_all(text.as_bytes())?;
-    writer.flush()?;
-    drop(writer);
-    file.sync_all()
-}
-
 /// The path with `.` and `..` carried out on its text. The folder it starts from has no symbolic
 /// links (see [`folder_of`]), so this names the same file.
 fn without_dots(path: &Path) -> PathBuf {
@@ -126,16 +100,5 @@ mod tests {
             assert_eq!(relative(file, folder), written);
             assert_eq!(resolve(written, folder, "").unwrap(), file);
         }
-    }
-
-    #[test]
-    fn writing_replaces_the_file_and_leaves_nothing_beside_it() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("scene.toml");
-        write_whole(&path, "one").unwrap();
-        write_whole(&path, "two").unwrap();
-        assert_eq!(std::fs::read_to_string(&path).unwrap(), "two");
-        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
-        assert!(write_whole(&folder.path().join("no/scene.toml"), "x").is_err());
     }
 }

@@ -15,6 +15,12 @@ pub struct Opened {
     pub notes: Vec<String>,
 }
 
+/// Whether the name is that of a scene, a file or an embedded one, and not of a bare volume.
+pub fn is_scene(source: &str) -> bool {
+    embedded::scene(source).is_some()
+        || !source.starts_with(BUILTIN) && files::has_extension(Path::new(source), "toml")
+}
+
 /// The settings of a scene file, of a bare volume, or of `builtin:NAME`.
 ///
 /// # Errors

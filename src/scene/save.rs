@@ -1,9 +1,11 @@
 //! Settings to scene text: *save scene as*, and the scene in a snapshot's header.
 
+use std::io::Write;
 use std::path::Path;
 
 use super::{Settings, files};
 use crate::error::{Error, Result};
+use crate::files::replace;
 
 /// The scene as TOML. With a folder, the files in it are named relative to that folder where
 /// that is possible; without, by their absolute names.
@@ -27,5 +29,6 @@ pub fn to_toml(settings: &Settings, folder: Option<&Path>) -> Result<String> {
 pub fn save(settings: &Settings, path: &Path) -> Result<()> {
     super::validate(settings, &path.display().to_string())?;
     let folder = files::folder_of(path)?;
-    files::write_whole(path, &to_toml(settings, Some(&folder))?)
+    let text = to_toml(settings, Some(&folder))?;
+    replace(path, |file| file.write_all(text.as_bytes()).map_err(|e| Error::io(path, e)))
 }

@@ -29,7 +29,7 @@ mod volume;
 
 pub use camera::CameraSettings;
 pub use emission::{EmissionMode, EmissionSettings, Normalize};
-pub use film::{EnvironmentSettings, FilmSettings, PathSettings};
+pub use film::{EnvironmentSettings, FilmSettings, MAX_SEED, PathSettings};
 pub use light::{LightKind, LightSettings};
 pub use surface::{MaterialKind, MaterialSettings, SurfaceSettings, SurfaceShape};
 pub use values::{Albedo, Axis, Color, Extent, GridKey};

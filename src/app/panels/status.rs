@@ -72,9 +72,8 @@ fn progress(ui: &mut Ui, stats: &RenderStats, engine: &Engine) {
     figure(ui, &count(rate), "collisions/s", help, 50.0);
     if stats.non_finite > 0 {
         let text = format!("{} samples dropped", stats.non_finite);
-        ui.label(RichText::new(text).color(color::WARNING)).on_hover_text(
-            "Samples that were not finite numbers; they are left out of the picture.",
-        );
+        ui.label(RichText::new(text).color(color::WARNING))
+            .on_hover_text("Samples that were not finite numbers; they count as black.");
     }
     let state = match (engine.paused(), stats.finished) {
         (true, _) => "paused",

@@ -5,6 +5,9 @@ use serde::{Deserialize, Serialize};
 
 use super::Color;
 
+/// The largest seed: up to here whole numbers survive programs that read all numbers as `f64`.
+pub const MAX_SEED: u64 = (1 << 53) - 1;
+
 /// The picture: its size and how long it is sampled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
@@ -13,7 +16,7 @@ pub struct FilmSettings {
     #[schemars(extend("unit" = "pixels", "minimum" = 1, "maximum" = 16384))]
     pub size: [u32; 2],
     /// Another seed gives the same picture with other noise.
-    #[schemars(range(min = 0, max = 9_007_199_254_740_991_i64))]
+    #[schemars(range(min = 0, max = MAX_SEED))]
     pub seed: u64,
     /// Samples per pixel after which the picture is finished; 0 goes on until stopped.
     #[schemars(extend("unit" = "samples"), range(min = 0, max = 4_294_967_295_u32))]
