@@ -198,7 +198,12 @@ impl Engine {
             && self.failed < generation
         {
             self.failed = generation;
-            news.push(News::Failed(failure.to_string()));
+            let replay = failure.replay_options().map_or_else(String::new, |options| {
+                format!(
+                    "; save the scene and follow the path with: flambeau replay SCENE {options}"
+                )
+            });
+            news.push(News::Failed(format!("{failure}{replay}")));
         }
         news
     }

@@ -1,5 +1,6 @@
 //! Writes pictures and scenes on threads of their own, pictures from a consistent copy of the film.
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc;
 
@@ -93,7 +94,8 @@ impl Saver {
     pub fn finish(&mut self) {
         for save in self.saves.drain(..) {
             if let Ok(Err(error)) = save.result.recv() {
-                eprintln!("{error}");
+                // Nowhere is left to say it where nobody reads the standard error.
+                let _ = writeln!(std::io::stderr(), "{error}");
             }
         }
     }
@@ -132,6 +134,7 @@ fn header(settings: &Settings, seconds: f64) -> Result<Header> {
         seed: settings.film.seed,
         version: env!("CARGO_PKG_VERSION").to_owned(),
         wall_seconds: seconds,
+        files: scene::fingerprints(settings)?,
         ..Header::default()
     })
 }
