@@ -340,6 +340,9 @@ fn stop_with(signal: rustix::process::Signal) {
         .unwrap();
     std::thread::sleep(Duration::from_millis(700));
     kill_process(Pid::from_child(&child), signal).unwrap();
+    // As `timeout` does, a second one at once; the program may be done by then.
+    std::thread::sleep(Duration::from_millis(5));
+    let _ = kill_process(Pid::from_child(&child), signal);
     let start = Instant::now();
     let status = child.wait().unwrap();
     assert_eq!(status.code(), Some(130));

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use clap::Args;
 use glam::UVec2;
@@ -25,6 +25,8 @@ use crate::transport::Frame;
 
 /// Samples a pixel where neither the command line nor the scene says how many.
 const DEFAULT_SPP: u32 = 64;
+/// After an interrupt, another one this much later ends the program without waiting for files.
+const IMPATIENCE: Duration = Duration::from_secs(1);
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -206,12 +208,15 @@ fn spent_before(header: &Header) -> Spent {
 }
 
 /// A flag that Ctrl-C sets, and so does a polite request to end, as render farms and terminals
-/// that close send it; a second one ends the program at once.
+/// that close send it; another one later ends the program at once.
 fn listen_for_interrupt() -> Result<Arc<AtomicBool>> {
     let interrupt = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&interrupt);
+    let mut first = None;
     ctrlc::set_handler(move || {
-        if flag.swap(true, Ordering::Relaxed) {
+        flag.store(true, Ordering::Relaxed);
+        // `timeout` sends its signal twice in a row; only a later one means that writing shall stop.
+        if first.get_or_insert_with(Instant::now).elapsed() > IMPATIENCE {
             std::process::exit(Exit::Interrupted as i32);
         }
     })
