@@ -21,7 +21,7 @@ fn set(text: &str, assignments: &[&str]) -> flambeau::error::Result<Settings> {
     scene::parse(text, "torch.toml", Path::new("/scenes"), &overrides)
 }
 
-/// The scene of the format's description, apart from the strategies that are not there yet.
+/// The scene of the format's description, apart from `probe_mis`, which is not there yet.
 const EXAMPLE: &str = r#"
 [camera]
 position = [0.0, -6.5, 2.2]
@@ -75,6 +75,9 @@ preset = "full"
 emission_decoupling = true
 emission_ratio_tracking = true
 majorant_boost = true
+nee = true
+[strategy.advanced]
+boost_mode = "stratified"
 "#;
 
 #[test]
@@ -223,15 +226,15 @@ const MALFORMED: &[(&str, &[&str])] = &[
     ("[strategy]\nmajorant_bost = true", &["strategy.majorant_bost:", "strategy.majorant_boost"]),
     ("[strategy]\nmajorant_boost = 1", &["strategy.majorant_boost:", "expected boolean"]),
     ("[strategy]\npreset = 'best'", &["strategy.preset:", "\"best\"", "\"full\""]),
-    ("[strategy]\nnee = true", &["strategy.nee:", "strategy is not there yet"]),
+    ("[strategy]\nprobe_mis = true", &["strategy.probe_mis:", "strategy is not there yet"]),
     ("[strategy]\nintegrator = 'march'", &["strategy.integrator:", "not there yet"]),
     (
         "[strategy.advanced]\nprobe_count = 3",
         &["strategy.advanced.probe_count:", "strategy is not there yet"],
     ),
     (
-        "[strategy.advanced]\nboost_mode = 'optimal'",
-        &["strategy.advanced.boost_mode:", "not there yet", "\"clamped\""],
+        "[strategy.advanced]\nlight_selection = 'probes'",
+        &["strategy.advanced.light_selection:", "not there yet", "\"hierarchy\""],
     ),
     ("[strategy.advanced]\nboost_amount = -1", &["strategy.advanced.boost_amount:", "0..1000"]),
 ];

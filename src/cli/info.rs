@@ -175,6 +175,7 @@ fn summary(settings: &Settings) -> String {
         ("emission_decoupling", strategy.emission_decoupling),
         ("emission_ratio_tracking", strategy.emission_ratio_tracking),
         ("majorant_boost", strategy.majorant_boost),
+        ("nee", strategy.nee),
     ] {
         report.row("", format!("{name} = {on}"));
     }

@@ -21,6 +21,9 @@ pub struct Strategy {
     /// Take more steps where the fire is bright, even if there is hardly any smoke there. Much
     /// less noise in bright thin flames; costs steps inside the fire only.
     pub majorant_boost: bool,
+    /// Treat burning volumes as lights: at every bounce, look straight at the fire as well as in a
+    /// random direction. Much less noise wherever fire lights smoke, floors or walls.
+    pub nee: bool,
     /// The finer choices behind the toggles.
     pub advanced: Advanced,
 }
@@ -29,8 +32,10 @@ pub struct Strategy {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Advanced {
-    /// How far the majorant boost may go. `clamped` never takes steps much shorter than a voxel;
-    /// `literal` has no such limit, as the talk states it.
+    /// How the majorant boost places its steps. `stratified` spreads them evenly along the ray and
+    /// measures the smoke in front of them apart; `optimal` takes them where they lower the noise
+    /// most; `clamped` takes more where the fire is bright, never much shorter than a voxel;
+    /// `literal` is the same without that limit, as the talk states it.
     pub boost_mode: BoostMode,
     /// Extra steps that the majorant boost takes along the brightest line through the volume.
     /// More steps, less noise; 0 boosts nothing.
@@ -39,17 +44,52 @@ pub struct Advanced {
     /// With `boost_mode = "clamped"`: the shortest boosted step, counted in voxels.
     #[schemars(range(min = 0.01, max = 1000.0), extend("unit" = "voxels"))]
     pub boost_clamp_voxels: f32,
+    /// What a look at the fire brings back. `line` gathers its glow all along the line of sight;
+    /// `point` takes one point of it, which is cheaper and noisier.
+    pub nee_evaluation: NeeEvaluation,
+    /// How a bounce chooses the light it looks at. `hierarchy` prefers what is bright and near;
+    /// `uniform` gives every light the same chance.
+    pub light_selection: LightSelection,
+    /// Spread the samples of a pixel evenly instead of at random. Less noise at no cost; off it
+    /// shows what independent samples would bring.
+    pub low_discrepancy: bool,
 }
 
-/// How the majorant boost is limited.
+/// How the majorant boost places its steps.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum BoostMode {
-    /// The boosted majorant never asks for steps shorter than `boost_clamp_voxels`.
+    /// Evenly spread steps, with the transmittance estimated apart.
     #[default]
+    Stratified,
+    /// Steps where they lower the variance most for their cost.
+    Optimal,
+    /// The boosted majorant never asks for steps shorter than `boost_clamp_voxels`.
     Clamped,
     /// The talk's maximum of the two majorants, without the clamp.
     Literal,
+}
+
+/// How a volume seen from a vertex as a light is evaluated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum NeeEvaluation {
+    /// Its emission along the whole line of sight.
+    #[default]
+    Line,
+    /// Its emission at the sampled point.
+    Point,
+}
+
+/// How a vertex chooses among the lights.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum LightSelection {
+    /// By power, distance and facing, through a hierarchy.
+    #[default]
+    Hierarchy,
+    /// Each with the same probability.
+    Uniform,
 }
 
 /// A named set of toggles.
@@ -68,11 +108,8 @@ pub enum Preset {
 /// Keys of `[strategy]` that the scene format knows but whose strategy is not there yet. They are
 /// refused with a message that says so, which is another message than for a misspelled key.
 pub const PLANNED_KEYS: &[&str] = &[
-    "nee",
     "probe_mis",
     "integrator",
-    "advanced.nee_evaluation",
-    "advanced.light_selection",
     "advanced.distance",
     "advanced.probe_count",
     "advanced.probe_learning",
@@ -84,8 +121,8 @@ pub const PLANNED_KEYS: &[&str] = &[
     "advanced.integrator",
 ];
 
-/// Values of `advanced.boost_mode` that the scene format knows but that are not there yet.
-pub const PLANNED_BOOST_MODES: &[&str] = &["optimal", "stratified"];
+/// Values of `advanced.light_selection` that the scene format knows but that are not there yet.
+pub const PLANNED_LIGHT_SELECTIONS: &[&str] = &["probes"];
 
 impl Strategy {
     /// The preset whose toggles these are, whatever the advanced choices; the fuller one where
@@ -105,7 +142,14 @@ impl Default for Strategy {
 
 impl Default for Advanced {
     fn default() -> Self {
-        Self { boost_mode: BoostMode::default(), boost_amount: 1.0, boost_clamp_voxels: 1.0 }
+        Self {
+            boost_mode: BoostMode::default(),
+            boost_amount: 1.0,
+            boost_clamp_voxels: 1.0,
+            nee_evaluation: NeeEvaluation::default(),
+            light_selection: LightSelection::default(),
+            low_discrepancy: true,
+        }
     }
 }
 
@@ -120,6 +164,7 @@ impl Preset {
             emission_decoupling: on,
             emission_ratio_tracking: on,
             majorant_boost: on,
+            nee: on,
             advanced: Advanced::default(),
         }
     }

@@ -228,8 +228,9 @@ impl EmissionMajorant {
         let advanced = &strategy.advanced;
         let boost = if strategy.majorant_boost { advanced.boost_amount } else { 0.0 };
         let per_voxel = match advanced.boost_mode {
-            BoostMode::Clamped => 1.0 / advanced.boost_clamp_voxels,
             BoostMode::Literal => f32::INFINITY,
+            // The other modes are for the emission's own walk only.
+            _ => 1.0 / advanced.boost_clamp_voxels,
         };
         Self { boost, per_voxel }
     }

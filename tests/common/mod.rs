@@ -63,11 +63,12 @@ pub fn with_strategy(scene: &Scene, strategy: Strategy) -> Scene {
 
 /// Every combination of the toggles.
 pub fn all_strategies() -> Vec<Strategy> {
-    (0..8)
+    (0..16)
         .map(|bits| Strategy {
             emission_decoupling: bits & 1 != 0,
             emission_ratio_tracking: bits & 2 != 0,
             majorant_boost: bits & 4 != 0,
+            nee: bits & 8 != 0,
             ..Strategy::default()
         })
         .collect()
@@ -80,6 +81,7 @@ pub fn name(strategy: &Strategy) -> String {
         on(strategy.emission_decoupling, 'd'),
         on(strategy.emission_ratio_tracking, 'r'),
         on(strategy.majorant_boost, 'b'),
+        on(strategy.nee, 'n'),
     ]
     .iter()
     .collect()
