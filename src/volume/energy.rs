@@ -22,8 +22,8 @@ const POINTS: i32 = 16;
 /// Generators of the lattice, the first of them 1.
 const GENERATORS: [i32; 3] = [1, 3, 7];
 /// Share of its upper bound that every cell gets beside what was read: a spark between the points
-/// must not be a surprise. A voxel's own in a cell of 4³ has a mean of 1/64 of its peak.
-const SHARE_OF_BOUND: f64 = 1.0 / 32.0;
+/// must not be a surprise. That of one voxel in a cell of 4³ has a mean of 1/64 of its peak.
+const SHARE_OF_BOUND: f64 = 1.0 / 64.0;
 /// Smallest density relative to the largest, so that single precision holds both.
 const FAINTEST: f64 = 1e-30;
 
