@@ -156,7 +156,7 @@ impl LightTree {
     fn share_of_first(&self, first: usize, to: &Receiver) -> Option<f64> {
         let [a, b] = [0, 1].map(|child| self.nodes[first + child].importance(to));
         let total = a + b;
-        if !(total > 0.0) {
+        if total <= 0.0 || total.is_nan() {
             return None;
         }
         // However faint, what can contribute must not round to never.

@@ -263,7 +263,7 @@ fn mean_over(bounds: &Aabb, emission: &impl Fn(Vec3A) -> f32) -> f64 {
 
 /// A value that sums and quotients stay numbers with: none is 0, infinity the largest.
 fn magnitude(value: f32) -> f64 {
-    f64::from(value.max(0.0).min(f32::MAX))
+    if value.is_nan() { 0.0 } else { f64::from(value.clamp(0.0, f32::MAX)) }
 }
 
 /// In single precision, neither infinite nor rounded to zero where it is above zero.

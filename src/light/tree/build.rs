@@ -35,7 +35,7 @@ struct Summary {
 }
 
 pub(super) fn build(emitters: &[Emitter]) -> LightTree {
-    let brightest = emitters.iter().map(|e| intensity(e)).fold(0.0, f32::max);
+    let brightest = emitters.iter().map(intensity).fold(0.0, f32::max);
     let mut items: Vec<Item> = emitters
         .iter()
         .enumerate()

@@ -63,7 +63,7 @@ impl Cone {
         }
         let towards = point - bounds.center();
         let (distance, radius) = (towards.length(), 0.5 * bounds.size().length());
-        if !(distance > radius) {
+        if distance <= radius || distance.is_nan() {
             return true;
         }
         // Directions from inside the box's sphere differ from the center's by less than this.
