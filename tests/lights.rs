@@ -48,6 +48,7 @@ const SPARKS: &str = r#"
     half_size = [1, 0.7, 0.4]
     frequency = 1.0
     octaves = 7
+    contrast = 1.7
     emission = { mode = "ramp", grid = "density", stops = [[0.8, 0, 0, 0], [1, 1, 1, 1]] }
 "#;
 const BOX: &str = r#"
