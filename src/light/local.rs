@@ -3,8 +3,8 @@
 
 use glam::Vec3A;
 
-use super::LightSample;
-use crate::math::{Rgb, luminance};
+use super::{Emitter, LightSample};
+use crate::math::{Aabb, Rgb, luminance};
 
 /// The same intensity in all directions.
 #[derive(Clone, Debug)]
@@ -28,9 +28,9 @@ pub struct Spot {
 }
 
 impl Point {
-    pub(super) fn importance(&self, from: Vec3A) -> f32 {
-        luminance(self.intensity)
-            / (self.position - from).length_squared().max(f32::MIN_POSITIVE.sqrt())
+    pub(super) fn emitter(&self) -> Emitter {
+        let bounds = Aabb::new(self.position, self.position);
+        Emitter { bounds, intensity: luminance(self.intensity), cone: None }
     }
 
     pub(super) fn sample(&self, from: Vec3A) -> Option<LightSample> {
@@ -48,9 +48,10 @@ impl Spot {
         Self { position, axis, intensity, cos_edge: half.cos(), cos_full }
     }
 
-    pub(super) fn importance(&self, from: Vec3A) -> f32 {
-        let intensity = luminance(self.intensity_towards(from));
-        intensity / (self.position - from).length_squared().max(f32::MIN_POSITIVE.sqrt())
+    pub(super) fn emitter(&self) -> Emitter {
+        let bounds = Aabb::new(self.position, self.position);
+        let cone = Some((self.axis, self.cos_edge));
+        Emitter { bounds, intensity: luminance(self.intensity), cone }
     }
 
     pub(super) fn sample(&self, from: Vec3A) -> Option<LightSample> {

@@ -1,6 +1,7 @@
-//! Lights: what can be sampled from a point, what is met by chance, and with which densities.
+//! Lights: what can be looked at from a vertex, what is met by chance, and with which densities.
 
 mod local;
+mod selector;
 mod sun;
 mod tree;
 
@@ -13,7 +14,9 @@ use glam::{Vec2, Vec3A};
 use crate::{
     math::{PathRng, Rgb, Slot, luminance},
     surface::{Hit, Shape, Surface},
+    volume::world::World,
 };
+use selector::Selector;
 
 /// Bound of a light's importance; sums of them stay finite.
 const MOST_IMPORTANT: f32 = 1e30;
@@ -36,6 +39,8 @@ pub enum Light {
         /// Its radiance.
         radiance: Rgb,
     },
+    /// The emissive volume of this index among the world's instances.
+    Volume(u32),
     /// An emitting shape that no ray meets: it neither shows nor hides anything.
     Invisible {
         /// Its shape.
@@ -54,119 +59,130 @@ pub struct LightSample {
     pub distance: f32,
     /// Radiance, or for a light of a single direction its irradiance across it.
     pub radiance: Rgb,
-    /// Density over solid angle, the choice of the light included; for a light of a single
-    /// direction the probability of the choice.
+    /// Density over solid angle; 1 for a light of a single direction.
     pub pdf: f32,
     /// Whether a scattered ray can meet the light too, so that MIS must share.
     pub can_be_met: bool,
 }
 
-/// All lights of a scene but the emissive volumes.
+/// Which lights take part, and how one is chosen among them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Choice {
+    /// Emissive volumes are among them.
+    pub volumes: bool,
+    /// Each has the same probability, wherever it is.
+    pub uniform: bool,
+}
+
+/// All lights of a scene.
 #[derive(Clone, Debug, Default)]
 pub struct Lights {
     /// Radiance from everywhere, met by chance only.
     pub environment: Rgb,
-    /// The lights that are sampled.
-    pub lights: Vec<Light>,
-    light_of_surface: Vec<Option<usize>>,
+    lights: Vec<Light>,
+    light_of_surface: Vec<Option<u32>>,
+    light_of_instance: Vec<Option<u32>>,
+    all: Selector,
+    without_volumes: Selector,
 }
 
 impl Lights {
-    /// Gathers the lights; every emitting surface of finite area becomes one.
-    pub fn new(environment: Rgb, mut lights: Vec<Light>, surfaces: &[Surface]) -> Self {
-        let light_of_surface = surfaces.iter().enumerate().map(|(index, surface)| {
-            let samplable = surface.emits() && surface.shape.area().is_some();
-            samplable.then(|| {
+    /// Gathers the lights; every emitting surface of finite area and every emissive volume that
+    /// ends somewhere becomes one.
+    pub fn new(
+        environment: Rgb,
+        mut lights: Vec<Light>,
+        surfaces: &[Surface],
+        world: &World,
+    ) -> Self {
+        let mut light_of_surface = vec![None; surfaces.len()];
+        for (index, surface) in surfaces.iter().enumerate() {
+            if surface.emits() && surface.shape.area().is_some() {
+                light_of_surface[index] = Some(lights.len() as u32);
                 let (shape, radiance) = (surface.shape.clone(), surface.emission);
                 lights.push(Light::Surface { index, shape, radiance });
-                lights.len() - 1
-            })
-        });
-        let light_of_surface = light_of_surface.collect();
-        Self { environment, lights, light_of_surface }
+            }
+        }
+        let without_volumes = Selector::new(&lights, world);
+        let mut light_of_instance = vec![None; world.instances().len()];
+        for &instance in world.emissive() {
+            light_of_instance[instance as usize] = Some(lights.len() as u32);
+            lights.push(Light::Volume(instance));
+        }
+        let all = Selector::new(&lights, world);
+        Self { environment, lights, light_of_surface, light_of_instance, all, without_volumes }
     }
 
-    /// Draws a light by its estimated irradiance at `from`, then a direction towards it.
-    pub fn sample(&self, from: Vec3A, rng: &mut PathRng) -> Option<LightSample> {
-        let total: f32 = self.lights.iter().map(|light| light.importance(from)).sum();
-        let mut left = rng.at(Slot::LightPick) * total;
-        let u = Vec2::new(rng.at(Slot::LightX), rng.at(Slot::LightY));
-        let pick = rng.at(Slot::LightCell);
-        let chosen =
-            self.lights.iter().map(|light| (light, light.importance(from))).find(|choice| {
-                left -= choice.1;
-                left < 0.0
-            });
-        let (light, importance) = chosen.or_else(|| {
-            // Rounding may leave a little over after the last light.
-            let light = self.lights.last()?;
-            Some((light, light.importance(from)))
-        })?;
-        let mut sample = light.sample(from, pick, u)?;
-        sample.pdf *= importance / total;
-        (sample.pdf > 0.0).then_some(sample)
+    /// Draws a light by what it may bring to a receiver, with its probability; `None` where no
+    /// light can bring anything.
+    pub fn choose(
+        &self,
+        to: &Receiver,
+        choice: Choice,
+        rng: &mut PathRng,
+    ) -> Option<(&Light, f32)> {
+        let (light, probability) = self.selector(choice).choose(to, choice.uniform, rng)?;
+        Some((self.lights.get(light as usize)?, probability))
     }
 
-    /// Density with which [`Lights::sample`] draws, from `from`, the direction that ended at `hit`
-    /// on the surface `index`; 0 where it cannot.
-    pub fn pdf_of_surface(&self, index: usize, from: Vec3A, hit: &Hit) -> f32 {
+    /// Density over solid angle with which, from a receiver, the direction is drawn that ended at
+    /// `hit` on the surface `index`, the choice of the light included; 0 where it cannot be.
+    pub fn pdf_of_surface(&self, index: usize, to: &Receiver, choice: Choice, hit: &Hit) -> f32 {
         let Some(Some(light)) = self.light_of_surface.get(index) else { return 0.0 };
-        match &self.lights[*light] {
-            light @ Light::Surface { shape, .. } => {
-                self.probability(light, from) * shape.pdf_solid_angle(from, hit)
+        match &self.lights[*light as usize] {
+            Light::Surface { shape, .. } => {
+                self.selector(choice).probability(*light, to, choice.uniform)
+                    * shape.pdf_solid_angle(to.position, hit)
             }
             _ => 0.0,
         }
     }
 
+    /// Probability with which the emissive volume `instance` is chosen from a receiver.
+    pub fn probability_of_volume(&self, instance: u32, to: &Receiver, choice: Choice) -> f32 {
+        match self.light_of_instance.get(instance as usize) {
+            Some(Some(light)) => self.selector(choice).probability(*light, to, choice.uniform),
+            _ => 0.0,
+        }
+    }
+
     /// Radiance of every sun's disk seen along the unit `direction`, each with the density of
-    /// sampling it from `from`.
-    pub fn suns_behind(&self, from: Vec3A, direction: Vec3A) -> impl Iterator<Item = (&Sun, f32)> {
-        self.lights.iter().filter_map(move |light| match light {
+    /// looking there from a receiver.
+    pub fn suns_behind(
+        &self,
+        to: Option<Receiver>,
+        choice: Choice,
+        direction: Vec3A,
+    ) -> impl Iterator<Item = (&Sun, f32)> {
+        let selector = self.selector(choice);
+        selector.suns().filter_map(move |index| match &self.lights[index as usize] {
             Light::Sun(sun) if sun.shows_along(direction) => {
-                Some((sun, self.probability(light, from) * sun.pdf_solid_angle()))
+                let pdf = to.map_or(0.0, |to| {
+                    selector.probability(index, &to, choice.uniform) * sun.pdf_solid_angle()
+                });
+                Some((sun, pdf))
             }
             _ => None,
         })
     }
 
-    fn probability(&self, light: &Light, from: Vec3A) -> f32 {
-        let total: f32 = self.lights.iter().map(|light| light.importance(from)).sum();
-        if total > 0.0 { light.importance(from) / total } else { 0.0 }
+    fn selector(&self, choice: Choice) -> &Selector {
+        if choice.volumes { &self.all } else { &self.without_volumes }
     }
 }
 
 impl Light {
-    /// A rough irradiance at `from`, all of its light assumed to arrive; above zero wherever the
-    /// light can bring anything, and finite, so that no light drowns the others.
-    fn importance(&self, from: Vec3A) -> f32 {
-        let irradiance = self.rough_irradiance(from);
-        if irradiance.is_nan() { 0.0 } else { irradiance.min(MOST_IMPORTANT) }
-    }
-
-    fn rough_irradiance(&self, from: Vec3A) -> f32 {
+    /// Draws a direction from `from` towards it, its density without the choice of the light;
+    /// `None` for volumes, whose light comes from all along the line of sight.
+    pub fn sample(&self, from: Vec3A, rng: &mut PathRng) -> Option<LightSample> {
+        let mut u = || Vec2::new(rng.at(Slot::LightX), rng.at(Slot::LightY));
         match self {
-            Self::Sun(sun) => luminance(sun.irradiance()),
-            Self::Point(point) => point.importance(from),
-            Self::Spot(spot) => spot.importance(from),
-            Self::Surface { shape, radiance, .. } | Self::Invisible { shape, radiance } => {
-                let (Some((center, radius)), Some(area)) = (shape.bounding_sphere(), shape.area())
-                else {
-                    return 0.0;
-                };
-                let squared = (center - from).length_squared().max(radius * radius);
-                luminance(*radiance) * area / squared
-            }
-        }
-    }
-
-    fn sample(&self, from: Vec3A, pick: f32, u: Vec2) -> Option<LightSample> {
-        match self {
-            Self::Sun(sun) => Some(sun.sample(u)),
+            Self::Sun(sun) => Some(sun.sample(u())),
             Self::Point(point) => point.sample(from),
             Self::Spot(spot) => spot.sample(from),
             Self::Surface { shape, radiance, .. } | Self::Invisible { shape, radiance } => {
-                let point = shape.sample(from, pick, u)?;
+                let u = u();
+                let point = shape.sample(from, rng.at(Slot::LightCell), u)?;
                 Some(LightSample {
                     direction: point.direction,
                     distance: point.distance,
@@ -174,6 +190,26 @@ impl Light {
                     pdf: point.pdf_solid_angle,
                     can_be_met: matches!(self, Self::Surface { .. }),
                 })
+            }
+            Self::Volume(_) => None,
+        }
+    }
+
+    /// How the hierarchy sees it; `None` for a sun, which is nowhere.
+    fn emitter(&self, world: &World) -> Option<Emitter> {
+        match self {
+            Self::Sun(_) => None,
+            Self::Point(point) => Some(point.emitter()),
+            Self::Spot(spot) => Some(spot.emitter()),
+            Self::Surface { shape, radiance, .. } | Self::Invisible { shape, radiance } => {
+                // A quarter of its area is the mean of what a convex shape shows.
+                let intensity = luminance(*radiance) * 0.25 * shape.area()?;
+                Some(Emitter { bounds: shape.bounds()?, intensity, cone: None })
+            }
+            Self::Volume(instance) => {
+                let instance = world.instances().get(*instance as usize)?;
+                let intensity = instance.emitted_power();
+                Some(Emitter { bounds: instance.emission_bounds(), intensity, cone: None })
             }
         }
     }

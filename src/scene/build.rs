@@ -36,10 +36,11 @@ pub fn build(settings: &Settings, cache: &VolumeCache, progress: Progress) -> Re
     let instances = volumes::instances(&settings.volume, cache, progress)?;
     let used: Vec<_> = instances.iter().map(|instance| instance.volume().clone()).collect();
     cache.retain(&used);
+    let world = World::new(instances);
     Ok(Scene {
         camera: camera(settings)?,
-        world: World::new(instances),
-        lights: Lights::new(settings.environment.radiance.rgb(), lights, &surfaces),
+        lights: Lights::new(settings.environment.radiance.rgb(), lights, &surfaces, &world),
+        world,
         surfaces,
         max_scatters: settings.path.max_scatters,
         strategy: settings.strategy,

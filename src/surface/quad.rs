@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec3A};
 
 use super::{Hit, SurfacePoint, shape::pdf_from_area};
-use crate::math::Ray;
+use crate::math::{Aabb, Ray};
 
 /// A parallelogram: the points `center + a · edge_u + b · edge_v` with a and b in [−1, 1].
 #[derive(Clone, Debug)]
@@ -32,6 +32,12 @@ impl Quad {
     /// Its area, of one side.
     pub fn area(&self) -> f32 {
         4.0 * self.edge_u.cross(self.edge_v).length()
+    }
+
+    /// A box around it.
+    pub fn bounds(&self) -> Aabb {
+        let half = self.edge_u.abs() + self.edge_v.abs();
+        Aabb::new(self.center - half, self.center + half)
     }
 
     /// The meeting with `ray` in (0, t_max).

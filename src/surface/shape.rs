@@ -3,7 +3,7 @@
 use glam::{Vec2, Vec3A};
 
 use super::{Quad, Sphere};
-use crate::math::{Frame, Ray};
+use crate::math::{Aabb, Frame, Ray};
 
 /// Rounding of a hit point relative to the numbers it was computed from, with room to spare.
 const RELATIVE_ERROR: f32 = 64.0 * f32::EPSILON;
@@ -105,16 +105,17 @@ impl Shape {
         }
     }
 
-    /// The middle and the radius of a sphere around it, for judging how much light it brings.
-    pub fn bounding_sphere(&self) -> Option<(Vec3A, f32)> {
+    /// A box around it; `None` where it is infinite.
+    pub fn bounds(&self) -> Option<Aabb> {
         match self {
             Self::Plane { .. } => None,
-            Self::Quad(quad) => Some((quad.center, quad.edge_u.length() + quad.edge_v.length())),
-            Self::Sphere(sphere) => Some((sphere.center, sphere.radius)),
+            Self::Quad(quad) => Some(quad.bounds()),
+            Self::Sphere(sphere) => {
+                let half = Vec3A::splat(sphere.radius);
+                Some(Aabb::new(sphere.center - half, sphere.center + half))
+            }
             Self::Box(faces) => {
-                let center = 0.5 * (faces[0].center + faces[1].center);
-                let half = faces[0].center - center + faces[0].edge_u + faces[0].edge_v;
-                Some((center, half.length()))
+                Some(faces.iter().fold(Aabb::EMPTY, |all, face| all.union(&face.bounds())))
             }
         }
     }

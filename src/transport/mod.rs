@@ -2,11 +2,14 @@
 
 pub mod camera;
 pub mod direct;
+pub mod emission;
 pub mod observer;
 pub mod path;
 pub mod scene;
 pub mod strategy;
+mod stratified;
 pub mod tracking;
+mod transmittance;
 pub mod vertex;
 
 use std::sync::Arc;

@@ -11,6 +11,7 @@
 use super::{
     PathSample,
     direct::{self, Departure},
+    emission::{self, Errand},
     observer::{Observer, Step},
     scene::Scene,
     tracking::{self, Event, Flight},
@@ -52,7 +53,8 @@ struct Path<'s> {
     throughput: Rgb,
     /// Scattering events and reflections so far.
     scatters: u32,
-    departure: Departure,
+    /// None for the camera ray.
+    departure: Option<Departure>,
     sample: PathSample,
 }
 
@@ -74,7 +76,10 @@ impl Path<'_> {
         }
         let flight = tracking::scatter(medium, &scene.strategy, self.throughput, rng);
         self.count(flight.collisions);
-        self.gather_emission(flight.emission, observer);
+        if flight.emission != Rgb::ZERO {
+            let weight = direct::weight_of_emission(scene, &self.ray, self.departure.as_ref());
+            self.gather_emission(weight * flight.emission, observer);
+        }
         self.throughput *= flight.weight;
         if self.scatters == 0 {
             self.note_first_event(&flight, end.as_ref(), coverage);
@@ -90,8 +95,8 @@ impl Path<'_> {
             }
             Event::Reached => {
                 if !scene.strategy.emission_ratio_tracking {
-                    let radiance =
-                        direct::at_the_end(scene, &self.ray, end.as_ref(), self.departure);
+                    let departure = self.departure.as_ref();
+                    let radiance = direct::at_the_end(scene, &self.ray, end.as_ref(), departure);
                     self.gather_end(radiance, observer);
                 }
                 match end.and_then(|end| reflecting(&end, &self.ray)) {
@@ -112,10 +117,15 @@ impl Path<'_> {
         rng: &mut PathRng,
         observer: &mut impl Observer,
     ) -> Rgb {
-        let glow = tracking::emission(medium, &self.scene.strategy, rng);
+        let errand = if self.departure.is_none() { Errand::Camera } else { Errand::Scattered };
+        let glow = emission::gather(medium, &self.scene.strategy, errand, rng);
         self.count(glow.collisions);
-        self.gather_emission(glow.emission, observer);
-        let radiance = direct::at_the_end(self.scene, &self.ray, end, self.departure);
+        let departure = self.departure.as_ref();
+        let radiance = direct::at_the_end(self.scene, &self.ray, end, departure);
+        if glow.emission != Rgb::ZERO {
+            let weight = direct::weight_of_emission(self.scene, &self.ray, departure);
+            self.gather_emission(weight * glow.emission, observer);
+        }
         self.gather_end(glow.transmittance * radiance, observer);
         glow.transmittance
     }
@@ -150,7 +160,8 @@ impl Path<'_> {
         let Some(turn) = vertex.sample(rng) else { return false };
         self.throughput *= turn.weight;
         self.ray = vertex.ray(turn.direction);
-        self.departure = Some((vertex.position, turn.pdf_solid_angle));
+        let (from, pdf_solid_angle) = (vertex.receiver(), turn.pdf_solid_angle);
+        self.departure = Some(Departure { from, pdf_solid_angle });
         self.survives(rng)
     }
 

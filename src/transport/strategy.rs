@@ -144,7 +144,7 @@ impl Default for Advanced {
     fn default() -> Self {
         Self {
             boost_mode: BoostMode::default(),
-            boost_amount: 1.0,
+            boost_amount: 32.0,
             boost_clamp_voxels: 1.0,
             nee_evaluation: NeeEvaluation::default(),
             light_selection: LightSelection::default(),

@@ -9,7 +9,7 @@
 
 use std::ops::ControlFlow;
 
-use super::strategy::{BoostMode, Strategy};
+use super::{emission::EmissionMajorant, strategy::Strategy};
 use crate::{
     math::{PathRng, Rgb, mean},
     volume::{
@@ -21,15 +21,15 @@ use crate::{
 
 /// Least collisions along a volume's brightest chord where emission is gathered by collisions, and
 /// least absorptions where it is gathered by those, so that fire without soot is found at all.
-const EMISSION_FLOOR: f32 = 0.1;
+pub(super) const EMISSION_FLOOR: f32 = 0.1;
 /// Most tentative collisions of one walk. One that gets here is cut, and its path counted as cut:
 /// it takes coefficients far beyond what single precision can step through.
 pub const MOST_COLLISIONS: u32 = 1 << 17;
 /// Below this weight a walk of transmittance goes on by chance only.
-const ROULETTE_BELOW: f32 = 0.05;
+pub(super) const ROULETTE_BELOW: f32 = 0.05;
 
 /// What a walk does on its way.
-trait Walk {
+pub(super) trait Walk {
     /// The rate of tentative collisions μ̄ in a segment, at least its majorant.
     fn rate(&self, segment: &Segment) -> f32;
 
@@ -42,18 +42,18 @@ trait Walk {
 }
 
 /// A tentative collision.
-struct Collision<'s> {
+pub(super) struct Collision<'s> {
     /// Where it is, as a ray parameter.
-    t: f32,
+    pub(super) t: f32,
     /// The majorant μ̄ it was drawn under.
-    rate: f32,
+    pub(super) rate: f32,
     /// The segment it lies in.
-    segment: &'s Segment,
+    pub(super) segment: &'s Segment,
 }
 
 /// Calls `walk` for each tentative collision along the medium, from near to far, and returns how
 /// many there were. A step that lands beyond the end of its segment is no collision.
-fn track(mut medium: MediumRay, rng: &mut PathRng, walk: &mut impl Walk) -> u32 {
+pub(super) fn track(mut medium: MediumRay, rng: &mut PathRng, walk: &mut impl Walk) -> u32 {
     let mut collisions = 0;
     let mut optical_distance = rng.exponential();
     while let Some(segment) = medium.next_segment() {
@@ -87,14 +87,14 @@ fn track(mut medium: MediumRay, rng: &mut PathRng, walk: &mut impl Walk) -> u32 
 /// μ_n = μ̄ − μ_t per channel. Never below zero: at a border of cells rounding may read the
 /// neighbor's coefficient.
 #[inline]
-fn null_coefficient(rate: f32, mu_t: Rgb) -> Rgb {
+pub(super) fn null_coefficient(rate: f32, mu_t: Rgb) -> Rgb {
     (Rgb::splat(rate) - mu_t).max(Rgb::ZERO)
 }
 
 /// Ends a walk of small weight by chance, and makes up for it where it goes on.
 #[inline]
-fn roulette(weight: &mut Rgb, rng: &mut PathRng) -> ControlFlow<()> {
-    let largest = weight.max_element();
+pub(super) fn roulette(weight: &mut Rgb, rng: &mut PathRng) -> ControlFlow<()> {
+    let largest = weight.abs().max_element();
     if !largest.is_finite() {
         // Leads nowhere, and is counted with the sample it spoils.
         return ControlFlow::Break(());
@@ -112,7 +112,7 @@ fn roulette(weight: &mut Rgb, rng: &mut PathRng) -> ControlFlow<()> {
 }
 
 /// exp(−τ) per channel; an infinite path through nothing is clear.
-fn exp_neg(mu_t: Rgb, length: f32) -> Rgb {
+pub(super) fn exp_neg(mu_t: Rgb, length: f32) -> Rgb {
     let clear = mu_t.cmpeq(Rgb::ZERO);
     Rgb::select(clear, Rgb::ONE, (-mu_t * length).exp())
 }
@@ -139,113 +139,13 @@ pub fn transmittance(medium: MediumRay, rng: &mut PathRng) -> (Rgb, u32) {
             at: &Collision,
             rng: &mut PathRng,
         ) -> ControlFlow<()> {
-            self.weight *= null_coefficient(at.rate, medium.coefficients(at.t).mu_t) / at.rate;
+            self.weight *= null_coefficient(at.rate, medium.mu_t(at.t)) / at.rate;
             roulette(&mut self.weight, rng)
         }
     }
     let mut walk = Ratio { weight: Rgb::ONE };
     let collisions = track(medium, rng, &mut walk);
     (walk.weight, collisions)
-}
-
-/// What an emission walk brings back.
-#[derive(Clone, Copy, Debug)]
-pub struct Glow {
-    /// ∫ T ε dt along the ray.
-    pub emission: Rgb,
-    /// T to the ray's end.
-    pub transmittance: Rgb,
-    /// Tentative collisions on the way.
-    pub collisions: u32,
-}
-
-/// Emission ratio tracking (Huang et al. 2021, algorithm 1): a walk of its own with P_n = 1 that
-/// neither scatters nor is absorbed. At each tentative collision L += w ε/μ̄, then w ·= μ_n/μ̄;
-/// closed form in uniform segments.
-pub fn emission(medium: MediumRay, strategy: &Strategy, rng: &mut PathRng) -> Glow {
-    struct EmissionRatio {
-        majorant: EmissionMajorant,
-        weight: Rgb,
-        emission: Rgb,
-    }
-    impl Walk for EmissionRatio {
-        fn rate(&self, segment: &Segment) -> f32 {
-            self.majorant.rate(segment)
-        }
-        fn cross(&mut self, medium: &MediumRay, segment: &Segment, _: &mut PathRng) -> bool {
-            let c = medium.coefficients(segment.t0);
-            let length = segment.t1 - segment.t0;
-            self.emission += self.weight * attenuated(c.emission, c.mu_t, length);
-            self.weight *= exp_neg(c.mu_t, length);
-            true
-        }
-        fn collide(
-            &mut self,
-            medium: &MediumRay,
-            at: &Collision,
-            rng: &mut PathRng,
-        ) -> ControlFlow<()> {
-            let c = medium.coefficients(at.t);
-            self.emission += self.weight * c.emission / at.rate;
-            self.weight *= null_coefficient(at.rate, c.mu_t) / at.rate;
-            roulette(&mut self.weight, rng)
-        }
-    }
-    let majorant = EmissionMajorant::of(strategy);
-    let mut walk = EmissionRatio { majorant, weight: Rgb::ONE, emission: Rgb::ZERO };
-    let collisions = track(medium, rng, &mut walk);
-    Glow { emission: walk.emission, transmittance: walk.weight, collisions }
-}
-
-/// ε ∫₀^length exp(−μ_t t) dt per channel.
-fn attenuated(emission: Rgb, mu_t: Rgb, length: f32) -> Rgb {
-    let of = |epsilon: f32, mu: f32| {
-        let tau = mu * length;
-        match () {
-            // Not even an infinite length of nothing glows.
-            () if epsilon == 0.0 => 0.0,
-            () if mu == 0.0 => epsilon * length,
-            () if tau < 1e-4 => epsilon * length * (1.0 - 0.5 * tau),
-            () => -epsilon * (-tau).exp_m1() / mu,
-        }
-    };
-    Rgb::new(of(emission.x, mu_t.x), of(emission.y, mu_t.y), of(emission.z, mu_t.z))
-}
-
-/// The majorant of a walk that gathers emission by collisions: μ̄ = max(maj μ_t, boost · maj ε),
-/// the boosted part at most one collision per voxel unless it is taken literally (Huang et al.
-/// 2021, section 2). It never goes below maj μ_t, nor below a floor wherever something emits.
-#[derive(Clone, Copy)]
-struct EmissionMajorant {
-    /// Collisions along the brightest chord.
-    boost: f32,
-    /// Most boosted collisions per voxel.
-    per_voxel: f32,
-}
-
-impl EmissionMajorant {
-    fn of(strategy: &Strategy) -> Self {
-        let advanced = &strategy.advanced;
-        let boost = if strategy.majorant_boost { advanced.boost_amount } else { 0.0 };
-        let per_voxel = match advanced.boost_mode {
-            BoostMode::Literal => f32::INFINITY,
-            // The other modes are for the emission's own walk only.
-            _ => 1.0 / advanced.boost_clamp_voxels,
-        };
-        Self { boost, per_voxel }
-    }
-
-    #[inline]
-    fn rate(&self, segment: &Segment) -> f32 {
-        let floor = segment.majorant.max(EMISSION_FLOOR * segment.emission_rate);
-        // Without voxels there is nothing to clamp by.
-        let most = if segment.voxel_rate > 0.0 {
-            segment.voxel_rate * self.per_voxel
-        } else {
-            f32::INFINITY
-        };
-        floor.max((self.boost * segment.emission_rate).min(most))
-    }
 }
 
 /// Where the scattering walk gathers emission.

@@ -4,6 +4,7 @@
 use glam::{Vec2, Vec3A};
 
 use crate::{
+    light::Receiver,
     math::{PathRng, Ray, Rgb, Slot},
     surface::{Bsdf, Hit},
     volume::phase::PhaseMix,
@@ -77,10 +78,16 @@ impl Vertex {
 
     /// The ray that leaves along `direction` without meeting the surface it starts on.
     pub fn ray(&self, direction: Vec3A) -> Ray {
+        Ray::new(self.receiver().position, direction)
+    }
+
+    /// Where light is wanted: the origin of every ray that leaves, and the side it leaves from.
+    pub fn receiver(&self) -> Receiver {
         match &self.kind {
-            Kind::Volume { .. } => Ray::new(self.position, direction),
+            Kind::Volume { .. } => Receiver { position: self.position, normal: None },
             Kind::Surface { bsdf, offset } => {
-                Ray::new(self.position + *offset * bsdf.normal(), direction)
+                let normal = bsdf.normal();
+                Receiver { position: self.position + *offset * normal, normal: Some(normal) }
             }
         }
     }

@@ -82,6 +82,22 @@ impl Substance {
         Coefficients { mu_t, mu_s, emission }
     }
 
+    /// μ_t alone at a point of the volume's space.
+    #[inline]
+    pub fn mu_t(&self, local: Vec3A) -> Rgb {
+        self.density_scale * self.density.at(local).max(0.0)
+    }
+
+    /// ε alone at a point of the volume's space.
+    #[inline]
+    pub fn emission(&self, local: Vec3A) -> Rgb {
+        if self.emission.needs_density() {
+            self.at(local).emission
+        } else {
+            self.emission.at(local, Rgb::ZERO, 0.0)
+        }
+    }
+
     fn majorant_over(&self, local: &Aabb) -> Majorant {
         let density = self.density.range(local).1.max(0.0);
         let mu_t = self.density_scale * density;

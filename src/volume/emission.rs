@@ -87,6 +87,17 @@ impl Emission {
         }
     }
 
+    /// Whether [`Emission::at`] makes use of the absorption or the density it is given.
+    #[inline]
+    pub fn needs_density(&self) -> bool {
+        match self {
+            Self::None | Self::Field { .. } => false,
+            Self::Source { .. } => true,
+            Self::Blackbody(blackbody) => blackbody.times_density,
+            Self::Ramp(ramp) => ramp.times_density,
+        }
+    }
+
     /// Whether it may be above zero anywhere.
     pub fn is_some(&self) -> bool {
         !matches!(self, Self::None)

@@ -18,7 +18,7 @@ use super::{
     medium::{Coefficients, Segment},
     phase::PhaseMix,
 };
-use crate::math::{Aabb, Bvh, Ray};
+use crate::math::{Aabb, Bvh, Ray, Rgb};
 
 /// Up to this many volumes are tried one by one, which costs less than a hierarchy.
 const FEW: usize = 3;
@@ -140,6 +140,16 @@ impl World {
         }
         medium
     }
+
+    /// ε at a point; `along` is any unit direction.
+    pub fn emission_at(&self, point: Vec3A, along: Vec3A) -> Rgb {
+        let reach = point.abs().max_element().max(1.0) * (8.0 * f32::EPSILON);
+        let mut medium = self.along(Ray::new(point, along), reach);
+        match medium.next_segment() {
+            Some(segment) => medium.emission(segment.t0),
+            None => Rgb::ZERO,
+        }
+    }
 }
 
 /// The medium along one ray, walked from its origin outwards.
@@ -204,6 +214,24 @@ impl<'w> MediumRay<'w> {
                 emission: sum.emission + c.emission,
             }
         })
+    }
+
+    /// μ_t alone at parameter `t` of the segment handed out last.
+    #[inline]
+    pub fn mu_t(&self, t: f32) -> Rgb {
+        if let [cursor] = self.inside.as_slice() {
+            return cursor.mu_t(t);
+        }
+        self.inside.iter().fold(Rgb::ZERO, |sum, cursor| sum + cursor.mu_t(t))
+    }
+
+    /// ε alone at parameter `t` of the segment handed out last.
+    #[inline]
+    pub fn emission(&self, t: f32) -> Rgb {
+        if let [cursor] = self.inside.as_slice() {
+            return cursor.emission(t);
+        }
+        self.inside.iter().fold(Rgb::ZERO, |sum, cursor| sum + cursor.emission(t))
     }
 
     /// The phase function at parameter `t` of the segment handed out last.
@@ -317,6 +345,22 @@ impl<'w> Cursor<'w> {
             emission_rate: self.majorant.emission * self.instance.emission_rate,
             voxel_rate: self.instance.voxel_rate,
             uniform: self.cells.is_none(),
+        }
+    }
+
+    #[inline]
+    fn mu_t(&self, t: f32) -> Rgb {
+        match self.instance.volume.bounds() {
+            Bounds::Uniform(coefficients, _) => coefficients.mu_t,
+            Bounds::Cells(_) => self.instance.volume.substance().mu_t(self.local.at(t)),
+        }
+    }
+
+    #[inline]
+    fn emission(&self, t: f32) -> Rgb {
+        match self.instance.volume.bounds() {
+            Bounds::Uniform(coefficients, _) => coefficients.emission,
+            Bounds::Cells(_) => self.instance.volume.substance().emission(self.local.at(t)),
         }
     }
 
