@@ -18,7 +18,7 @@ use rayon::prelude::*;
 /// Pixels along each side.
 pub const SIDE: u32 = 128;
 /// Fewest and most pictures that variances are taken from.
-pub const SEEDS: [usize; 2] = [4, 64];
+pub const SEEDS: [usize; 2] = [8, 64];
 /// Seconds are CPU seconds of all threads over this number, whatever the number of threads: the
 /// convention under which other renderers were measured.
 pub const THREADS: f64 = 2.0;

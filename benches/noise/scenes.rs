@@ -46,8 +46,7 @@ pub fn all() -> Vec<BenchScene> {
         many_lights: false,
         set: &[],
     };
-    let peers =
-        |name, shows, file| BenchScene { folder: Folder::Peers, ..own(name, shows, file) };
+    let peers = |name, shows, file| BenchScene { folder: Folder::Peers, ..own(name, shows, file) };
     vec![
         BenchScene {
             compares_modes: true,

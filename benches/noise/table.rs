@@ -30,45 +30,58 @@ pub fn preamble(plan: &Plan) {
     );
 }
 
+/// The columns and their widths, wide enough for any figure.
+const COLUMNS: [(&str, usize); 11] = [
+    ("strategy", 26),
+    ("mean", 9),
+    ("±", 6),
+    ("variance", 9),
+    ("±", 5),
+    ("seeds", 5),
+    ("ms/spp", 8),
+    ("steps/path", 10),
+    ("efficiency", 10),
+    ("eq samples", 10),
+    ("eq time", 10),
+];
+
 /// Measures every row and prints it.
 pub fn print(scene: &BenchScene, built: &Scene, rows: &[Row], plan: &Plan) {
     println!("\n## {}: {}\n", scene.name, scene.shows);
-    println!(
-        "| {:<26} | {:>9} | {:>6} | {:>9} | {:>5} | {:>5} | {:>8} | {:>10} | {:>10} | {:>10} | {:>10} |",
-        "strategy",
-        "mean",
-        "±",
-        "variance",
-        "±",
-        "seeds",
-        "ms/spp",
-        "steps/path",
-        "efficiency",
-        "eq samples",
-        "eq time",
-    );
-    println!("|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|");
+    print_cells(&COLUMNS.map(|(name, _)| name.to_owned()));
+    println!("|---{}|", "|--:".repeat(COLUMNS.len() - 1));
     let mut first = None;
     for row in rows {
         let scene = Arc::new(Scene { strategy: row.strategy, ..built.clone() });
         let noise = measure::measure(&scene, plan);
         let first = first.get_or_insert([noise.variance, noise.efficiency()]);
-        print_row(&row.name, &noise, *first);
+        print_cells(&cells(row, &noise, *first));
     }
 }
 
-fn print_row(name: &str, noise: &Noise, [variance, efficiency]: [f64; 2]) {
-    println!(
-        "| {name:<26} | {:>9.3e} | {:>4.2} % | {:>9.3e} | {:>3.0} % | {:>5} | {:>8.3} | {:>10.3} | {:>10.3e} | {:>10.2} | {:>10.2} |",
-        noise.mean,
-        100.0 * noise.mean_error,
-        noise.variance,
-        100.0 * noise.variance_error,
-        noise.seeds,
-        1.0e3 * noise.seconds,
-        noise.steps,
-        noise.efficiency(),
-        variance / noise.variance,
-        noise.efficiency() / efficiency,
-    );
+fn cells(row: &Row, noise: &Noise, [variance, efficiency]: [f64; 2]) -> [String; COLUMNS.len()] {
+    [
+        row.name.clone(),
+        format!("{:.3e}", noise.mean),
+        format!("{:.2} %", 100.0 * noise.mean_error),
+        format!("{:.3e}", noise.variance),
+        format!("{:.0} %", 100.0 * noise.variance_error),
+        noise.seeds.to_string(),
+        format!("{:.3}", 1.0e3 * noise.seconds),
+        format!("{:.3}", noise.steps),
+        format!("{:.3e}", noise.efficiency()),
+        format!("{:.2}", variance / noise.variance),
+        format!("{:.2}", noise.efficiency() / efficiency),
+    ]
+}
+
+/// The first cell to the left, figures to the right.
+fn print_cells(cells: &[String; COLUMNS.len()]) {
+    for (column, (cell, (_, width))) in std::iter::zip(cells, COLUMNS).enumerate() {
+        match column {
+            0 => print!("| {cell:<width$} |"),
+            _ => print!(" {cell:>width$} |"),
+        }
+    }
+    println!();
 }
