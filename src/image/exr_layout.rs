@@ -2,8 +2,9 @@
 
 use glam::UVec2;
 
+use crate::math::ACCUMULATORS;
 use crate::render::estimate::PixelEstimate;
-use crate::render::film::{ACCUMULATORS, Film, MAX_SAMPLES, Sums};
+use crate::render::film::{Film, MAX_SAMPLES, Sums};
 use crate::render::publish::shown_pixel;
 
 /// Floats in the state of a pixel.

@@ -2,14 +2,16 @@
 
 mod local;
 mod sun;
+mod tree;
 
 pub use local::{Point, Spot};
 pub use sun::Sun;
+pub use tree::{Emitter, LightTree, Receiver};
 
 use glam::{Vec2, Vec3A};
 
 use crate::{
-    math::{PathRng, Rgb, luminance},
+    math::{PathRng, Rgb, Slot, luminance},
     surface::{Hit, Shape, Surface},
 };
 
@@ -87,9 +89,9 @@ impl Lights {
     /// Draws a light by its estimated irradiance at `from`, then a direction towards it.
     pub fn sample(&self, from: Vec3A, rng: &mut PathRng) -> Option<LightSample> {
         let total: f32 = self.lights.iter().map(|light| light.importance(from)).sum();
-        let mut left = rng.uniform() * total;
-        let u = Vec2::new(rng.uniform(), rng.uniform());
-        let pick = rng.uniform();
+        let mut left = rng.at(Slot::LightPick) * total;
+        let u = Vec2::new(rng.at(Slot::LightX), rng.at(Slot::LightY));
+        let pick = rng.at(Slot::LightCell);
         let chosen =
             self.lights.iter().map(|light| (light, light.importance(from))).find(|choice| {
                 left -= choice.1;

@@ -5,12 +5,13 @@ mod bvh;
 mod frame;
 mod ray;
 mod rng;
+mod sobol;
 
 pub use aabb::Aabb;
 pub use bvh::Bvh;
 pub use frame::Frame;
 pub use ray::Ray;
-pub use rng::PathRng;
+pub use rng::{ACCUMULATORS, PathRng, Slot};
 
 /// A linear Rec.709 color, or three values that belong to its channels.
 pub type Rgb = glam::Vec3A;

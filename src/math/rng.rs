@@ -6,24 +6,174 @@ use glam::UVec2;
 use rand::{SeedableRng, TryRng};
 use rand_xoshiro::Xoshiro128PlusPlus;
 
+use super::sobol;
+
+/// Independent randomizations of a pixel: sample `s` belongs to number `s % ACCUMULATORS`, and the
+/// film keeps their sums apart. Samples of one randomization are spread evenly and depend on each
+/// other; noise is measured between the randomizations, which don't.
+pub const ACCUMULATORS: usize = 8;
+
+/// Vertices whose slots are spread evenly. Later ones add up over so many dimensions that there is
+/// nothing left to gain.
+const STRATIFIED_VERTICES: u32 = 4;
+
+/// What a number is for. Slots that shape the same part of a path share a Sobol sequence; those of
+/// different rows are independent:
+///
+/// | | | | |
+/// |---|---|---|---|
+/// | `PixelX`, `TurnX` | `PixelY`, `TurnY` | `Emission` | `TransmittanceA` |
+/// | `Distance` | `Event` | `TurnPick` | `TransmittanceB` |
+/// | `LightX` | `LightY` | `LightCell` | `LightPick` |
+/// | `LightEmission` | `LightTransmittanceA` | `LightZ` | `LightTransmittanceB` |
+///
+/// The first number of a row and the second make up the best pair. The camera has the slots
+/// `Pixel*`, every other vertex the slots `Turn*` in their place: both choose the ray that leaves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Slot {
+    /// Where on the pixel a camera ray passes, from left to right; at vertex 0 only.
+    PixelX,
+    /// Where on the pixel a camera ray passes, from top to bottom; at vertex 0 only.
+    PixelY,
+    /// Places of the emission walk along the ray that leaves the vertex.
+    Emission,
+    /// The estimate of the transmittance along that ray.
+    TransmittanceA,
+    /// The same, a second number.
+    TransmittanceB,
+    /// The first flight of the scattering walk along that ray.
+    Distance,
+    /// What happens where it ends.
+    Event,
+    /// Which light is looked at.
+    LightPick,
+    /// Which part of that light.
+    LightCell,
+    /// Where on or in the part.
+    LightX,
+    /// The same, a second number.
+    LightY,
+    /// The same, a third number.
+    LightZ,
+    /// Places of the emission walk along the ray to the light.
+    LightEmission,
+    /// The estimate of the transmittance along the ray to the light.
+    LightTransmittanceA,
+    /// The same, a second number.
+    LightTransmittanceB,
+    /// Which part of a phase function or material turns the path; not at vertex 0.
+    TurnPick,
+    /// The direction it turns to; not at vertex 0.
+    TurnX,
+    /// The same, a second number.
+    TurnY,
+}
+
+impl Slot {
+    /// The row of the table above and the place in it.
+    const fn place(self) -> (u32, usize) {
+        match self {
+            Self::PixelX | Self::TurnX => (0, 0),
+            Self::PixelY | Self::TurnY => (0, 1),
+            Self::Emission => (0, 2),
+            Self::TransmittanceA => (0, 3),
+            Self::Distance => (1, 0),
+            Self::Event => (1, 1),
+            Self::TurnPick => (1, 2),
+            Self::TransmittanceB => (1, 3),
+            Self::LightX => (2, 0),
+            Self::LightY => (2, 1),
+            Self::LightCell => (2, 2),
+            Self::LightPick => (2, 3),
+            Self::LightEmission => (3, 0),
+            Self::LightTransmittanceA => (3, 1),
+            Self::LightZ => (3, 2),
+            Self::LightTransmittanceB => (3, 3),
+        }
+    }
+}
+
 /// The random numbers of one path: (seed, pixel, sample) fixes them all, so that any path can be
 /// walked again and the number of threads changes nothing.
+///
+/// Most are independent. Those asked for by [`Slot`] are, in the first vertices of a
+/// [`PathRng::stratified`] path, spread evenly over the samples of the pixel: each is uniform and
+/// independent of everything else of the same path, but the samples of one randomization of the
+/// pixel ([`ACCUMULATORS`]) make room for each other.
 #[derive(Clone, Debug)]
-pub struct PathRng(Xoshiro128PlusPlus);
+pub struct PathRng {
+    random: Xoshiro128PlusPlus,
+    /// What the scrambling of the slots starts from: (seed, pixel, randomization).
+    key: u64,
+    /// Number of the sample among those of its randomization.
+    index: u32,
+    /// The vertex slots are for.
+    vertex: u32,
+    /// How many vertices have stratified slots.
+    stratified_vertices: u32,
+}
 
 impl PathRng {
-    /// The generator of one sample of one pixel.
+    /// The generator of one sample of one pixel, everything random.
     pub fn new(seed: u64, pixel: UVec2, sample: u32) -> Self {
-        let place = (u64::from(pixel.y) << 32) | u64::from(pixel.x);
-        let key = mix(mix(mix(seed) ^ place) ^ u64::from(sample));
-        Self(Xoshiro128PlusPlus::seed_from_u64(key))
+        let key = mix(pixel_key(seed, pixel) ^ u64::from(sample));
+        Self {
+            random: Xoshiro128PlusPlus::seed_from_u64(key),
+            key: 0,
+            index: 0,
+            vertex: 0,
+            stratified_vertices: 0,
+        }
+    }
+
+    /// The generator of one sample of one pixel with the slots of the first vertices spread evenly
+    /// over the samples.
+    pub fn stratified(seed: u64, pixel: UVec2, sample: u32) -> Self {
+        const RANDOMIZATIONS: u32 = ACCUMULATORS as u32;
+        let randomization = u64::from(sample % RANDOMIZATIONS);
+        Self {
+            // The complement keeps clear of the keys of single samples.
+            key: mix(!pixel_key(seed, pixel) ^ randomization),
+            index: sample / RANDOMIZATIONS,
+            stratified_vertices: STRATIFIED_VERTICES,
+            ..Self::new(seed, pixel, sample)
+        }
+    }
+
+    /// Enters vertex `index` of the path (0: the camera): slots mean that vertex's from now on.
+    #[inline]
+    pub fn enter_vertex(&mut self, index: u32) {
+        self.vertex = index;
+    }
+
+    /// The number in [0, 1) for `slot` of the present vertex, in steps of 2⁻²⁴. Ask for it at most
+    /// once a vertex: in the first vertices it would be the same number again.
+    #[inline]
+    pub fn at(&mut self, slot: Slot) -> f32 {
+        if self.vertex < self.stratified_vertices {
+            unit(self.stratified_bits(slot))
+        } else {
+            self.uniform()
+        }
+    }
+
+    /// [`PathRng::at`] in steps of 2⁻⁵³, for picks among millions.
+    #[inline]
+    pub fn at64(&mut self, slot: Slot) -> f64 {
+        const SCALE: f64 = 1.0 / (1u64 << 53) as f64;
+        let low = u64::from(self.bits());
+        let high = if self.vertex < self.stratified_vertices {
+            self.stratified_bits(slot)
+        } else {
+            self.bits()
+        };
+        ((u64::from(high) << 21) | (low >> 11)) as f64 * SCALE
     }
 
     /// A number uniform in [0, 1).
     #[inline]
     pub fn uniform(&mut self) -> f32 {
-        const SCALE: f32 = 1.0 / (1 << 24) as f32;
-        (self.bits() >> 8) as f32 * SCALE
+        unit(self.bits())
     }
 
     /// A number with density exp(-x), x >= 0: the optical distance to a collision.
@@ -34,25 +184,51 @@ impl PathRng {
 
     #[inline]
     fn bits(&mut self) -> u32 {
-        match self.0.try_next_u32() {
+        match self.random.try_next_u32() {
             Ok(bits) => bits,
         }
     }
+
+    fn stratified_bits(&self, slot: Slot) -> u32 {
+        let (row, dimension) = slot.place();
+        // Odd multiples of 2⁶⁴ over the golden ratio never meet for different small factors.
+        let place = |number: u64| {
+            let number = u64::from(self.vertex) * 64 + u64::from(row) * 8 + number;
+            mix(self.key ^ number.wrapping_mul(0x9e37_79b9_7f4a_7c15))
+        };
+        let index = match self.index {
+            index @ 0..2 => index,
+            index => sobol::shuffled_index(index, place(sobol::DIMENSIONS as u64)),
+        };
+        sobol::scrambled_point(index, dimension, place(dimension as u64))
+    }
+}
+
+/// The highest 24 bits as a number in [0, 1).
+#[inline]
+fn unit(bits: u32) -> f32 {
+    const SCALE: f32 = 1.0 / (1 << 24) as f32;
+    (bits >> 8) as f32 * SCALE
+}
+
+fn pixel_key(seed: u64, pixel: UVec2) -> u64 {
+    let place = (u64::from(pixel.y) << 32) | u64::from(pixel.x);
+    mix(mix(seed) ^ place)
 }
 
 impl TryRng for PathRng {
     type Error = Infallible;
 
     fn try_next_u32(&mut self) -> Result<u32, Infallible> {
-        self.0.try_next_u32()
+        self.random.try_next_u32()
     }
 
     fn try_next_u64(&mut self) -> Result<u64, Infallible> {
-        self.0.try_next_u64()
+        self.random.try_next_u64()
     }
 
     fn try_fill_bytes(&mut self, bytes: &mut [u8]) -> Result<(), Infallible> {
-        self.0.try_fill_bytes(bytes)
+        self.random.try_fill_bytes(bytes)
     }
 }
 

@@ -3,8 +3,9 @@
 use glam::UVec2;
 use rayon::prelude::*;
 
-use super::film::{ACCUMULATORS, Film, Sums};
+use super::film::{Film, Sums};
 use super::pair::{Pair, values};
+use crate::math::ACCUMULATORS;
 
 /// What the samples of one pixel say.
 #[derive(Clone, Copy, Debug)]

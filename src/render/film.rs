@@ -9,12 +9,8 @@ use glam::UVec2;
 
 use super::pair::{Pair, add_rgb};
 use crate::error::{Error, Result};
-use crate::math::Rgb;
+use crate::math::{ACCUMULATORS, Rgb};
 use crate::transport::PathSample;
-
-/// Independent accumulators a pixel; sample `s` goes to number `s % ACCUMULATORS`. Noise is
-/// measured between them, which holds for sequences whose samples are not independent.
-pub const ACCUMULATORS: usize = 8;
 
 /// Pixels along the side of a tile.
 pub const TILE: u32 = 16;

@@ -17,7 +17,7 @@ pub mod schedule;
 pub mod session;
 
 pub use estimate::FilmStats;
-pub use film::{ACCUMULATORS, Film};
+pub use film::Film;
 pub use headless::{Headless, Job, render_headless};
 pub use pool::Failure;
 pub use publish::{Picture, RenderStats};

@@ -15,7 +15,7 @@ use glam::{UVec2, Vec2};
 
 pub use scene::Scene;
 
-use crate::math::{PathRng, Rgb};
+use crate::math::{PathRng, Rgb, Slot};
 use observer::{Nobody, Observer};
 
 /// What one path brought to its pixel: four parts that sum to the beauty, and what else is kept.
@@ -66,8 +66,12 @@ pub struct Frame {
 impl Frame {
     /// Follows one path and shows each of its steps to `observer`.
     pub fn trace(&self, pixel: UVec2, sample: u32, observer: &mut impl Observer) -> PathSample {
-        let mut rng = PathRng::new(self.seed, pixel, sample);
-        let offset = Vec2::new(rng.uniform(), rng.uniform());
+        let numbers = match self.scene.strategy.advanced.low_discrepancy {
+            true => PathRng::stratified,
+            false => PathRng::new,
+        };
+        let mut rng = numbers(self.seed, pixel, sample);
+        let offset = Vec2::new(rng.at(Slot::PixelX), rng.at(Slot::PixelY));
         let ray = self.scene.camera.ray(self.size, pixel, offset);
         path::trace(&self.scene, ray, &mut rng, observer)
     }

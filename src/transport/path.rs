@@ -136,6 +136,7 @@ impl Path<'_> {
             return false;
         }
         self.scatters += 1;
+        rng.enter_vertex(self.scatters);
         observer.step(Step::Vertex { vertex, throughput: self.throughput });
         let (light, collisions) = direct::sample_lights(self.scene, vertex, rng);
         self.count(collisions);

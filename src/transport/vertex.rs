@@ -4,7 +4,7 @@
 use glam::{Vec2, Vec3A};
 
 use crate::{
-    math::{PathRng, Ray, Rgb},
+    math::{PathRng, Ray, Rgb, Slot},
     surface::{Bsdf, Hit},
     volume::phase::PhaseMix,
 };
@@ -61,7 +61,8 @@ impl Vertex {
 
     /// Draws the direction the path goes on along; `None` where it ends.
     pub fn sample(&self, rng: &mut PathRng) -> Option<Turn> {
-        let (pick, u) = (rng.uniform(), Vec2::new(rng.uniform(), rng.uniform()));
+        let pick = rng.at(Slot::TurnPick);
+        let u = Vec2::new(rng.at(Slot::TurnX), rng.at(Slot::TurnY));
         let direction = match &self.kind {
             Kind::Volume { phase, forward } => phase.sample(*forward, pick, u),
             Kind::Surface { bsdf, .. } => bsdf.sample(u)?,
