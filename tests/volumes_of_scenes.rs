@@ -49,7 +49,7 @@ fn every_shipped_scene_is_built() {
         assert_eq!(built.world.instances().len(), settings.volume.len());
         count += 1;
     }
-    assert!(count >= 6);
+    assert!(count >= 7);
     let embedded = scene::load(scene::DEFAULT_SCENE).unwrap();
     let file = scene::load(&format!("{}/scenes/torch.toml", env!("CARGO_MANIFEST_DIR"))).unwrap();
     assert_eq!(embedded, file);
@@ -176,6 +176,19 @@ fn grids_that_are_not_there_are_answered_with_those_that_are() {
         settings.volume[0].density.grid = Some("emission".into());
         assert!(build_error(&settings).contains("holds vectors"));
     }
+}
+
+#[test]
+fn the_street_keeps_one_torch_for_all_of_its_torches() {
+    let street =
+        scene::load(&format!("{}/scenes/street.toml", env!("CARGO_MANIFEST_DIR"))).unwrap();
+    let built = scene::build(&street, &VolumeCache::default(), NO_PROGRESS).unwrap();
+    let files = street.volume.iter().map(|volume| volume.file.is_some());
+    let torches: Vec<_> = std::iter::zip(files, built.world.instances())
+        .filter_map(|(is_torch, instance)| is_torch.then_some(instance.volume()))
+        .collect();
+    assert_eq!(torches.len(), 200);
+    assert!(torches.iter().all(|torch| std::sync::Arc::ptr_eq(torch, torches[0])));
 }
 
 #[test]

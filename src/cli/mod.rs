@@ -1,6 +1,6 @@
 //! The command line: one file a command. `main` parses, runs and reports.
 
-mod cpu_time;
+pub mod cpu_time;
 mod info;
 mod keys;
 mod outputs;

@@ -298,15 +298,15 @@ impl Walk for Scattering {
         }
         let u = rng.uniform() * total;
         if u < n {
-            self.weight *= mu_n * (total / (rate * n));
+            self.weight *= mu_n / rate * (total / n);
             return ControlFlow::Continue(());
         }
         if u < n + s {
-            self.weight *= c.mu_s * (total / (rate * s));
+            self.weight *= c.mu_s / rate * (total / s);
             self.event = Event::Scattered { t, phase: medium.phase(t) };
         } else {
             if self.gather == Gather::Absorption {
-                self.emission += self.weight * c.emission * (total / (rate * a));
+                self.emission += self.weight * c.emission / rate * (total / a);
             }
             let real = u - n - s < mean(color * c.mu_a());
             self.event = Event::Absorbed { t, real };
@@ -326,5 +326,55 @@ impl Scattering {
         } else {
             mu_a
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use glam::{Affine3A, UVec2, Vec3A};
+
+    use super::*;
+    use crate::{
+        math::{Aabb, Ray},
+        transport::strategy::Preset,
+        volume::{
+            body::{Region, Substance, Volume},
+            emission::Emission,
+            field::{RgbField, ScalarField},
+            world::{Instance, World},
+        },
+    };
+
+    /// A draw of zero distance collides in however thin a medium.
+    #[test]
+    fn a_collision_of_vanishing_rate_leaves_the_weight_alone() {
+        let glow =
+            Emission::Field { field: RgbField::Constant(Rgb::ONE), scale: Rgb::splat(1e-30) };
+        let substance = Substance {
+            density: ScalarField::Constant(0.0),
+            density_scale: Rgb::ONE,
+            albedo: RgbField::Constant(Rgb::ZERO),
+            g: 0.0,
+            emission: glow,
+        };
+        let region = Region::Box(Aabb::centered(Vec3A::ONE));
+        let volume = Arc::new(Volume::uniform(region, substance));
+        let world = World::new(vec![Instance::new(volume, Affine3A::IDENTITY)]);
+        let mut medium = world.along(Ray::new(-3.0 * Vec3A::X, Vec3A::X), f32::INFINITY);
+        let segment = medium.next_segment().unwrap();
+        let mut walk = Scattering {
+            majorant: EmissionMajorant::of(&Preset::Baseline.strategy()),
+            gather: Gather::EveryCollision,
+            throughput: Rgb::ONE,
+            weight: Rgb::ONE,
+            emission: Rgb::ZERO,
+            event: Event::Reached,
+        };
+        let at = Collision { t: 3.0, rate: 1e-30, segment: &segment };
+        let goes_on = walk.collide(&medium, &at, &mut PathRng::new(0, UVec2::ZERO, 0));
+        assert!(goes_on.is_continue());
+        assert_eq!((walk.weight, walk.emission), (Rgb::ONE, Rgb::ONE));
     }
 }

@@ -1,0 +1,91 @@
+//! What each strategy brings: variance at equal samples and at equal time, scene by scene.
+//!
+//! `cargo bench --bench noise -- [SCENE ...] [--quick]` prints a table per scene with one row per
+//! strategy; `-- modes` the modes of the majorant boost by their amounts; `-- --list` the scenes.
+//! All of it takes an hour of CPU time, `--quick` some minutes.
+
+mod measure;
+mod rows;
+mod scenes;
+mod table;
+
+use clap::Parser;
+
+use measure::Plan;
+use rows::Row;
+use scenes::BenchScene;
+
+/// The word that asks for the table of boost modes.
+const MODES: &str = "modes";
+
+#[derive(Parser)]
+#[command(name = "noise", about = "Variance and cost of each strategy, scene by scene")]
+struct Arguments {
+    /// Only scenes whose name contains one of these; `modes` for the modes of the majorant boost.
+    filters: Vec<String>,
+    /// Fewer samples and seeds: figures good to 10 to 20 %.
+    #[arg(long)]
+    quick: bool,
+    /// Samples per pixel of each picture [default: 64, quick 16].
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
+    spp: Option<u32>,
+    /// Seeds are added until the variance is known to this relative standard error [default: 0.05,
+    /// quick 0.1].
+    #[arg(long)]
+    error: Option<f64>,
+    /// CPU seconds after which a row gets no further seeds [default: 60, quick 6].
+    #[arg(long)]
+    budget: Option<f64>,
+    /// Render as the command line does, film and schedule included, not by a bare loop over pixels.
+    #[arg(long)]
+    film: bool,
+    /// Name the scenes.
+    #[arg(long)]
+    list: bool,
+    /// Passed by `cargo bench`; without it, as in `cargo test`, scenes are built but not measured.
+    #[arg(long, hide = true)]
+    bench: bool,
+}
+
+impl Arguments {
+    fn plan(&self) -> Plan {
+        let [spp, error, budget] = if self.quick { [16.0, 0.1, 6.0] } else { [64.0, 0.05, 60.0] };
+        Plan {
+            spp: self.spp.unwrap_or(spp as u32),
+            error: self.error.unwrap_or(error),
+            budget: self.budget.unwrap_or(budget),
+            film: self.film,
+        }
+    }
+
+    /// The scenes and rows that are asked for.
+    fn selection(&self) -> Vec<(BenchScene, Vec<Row>)> {
+        let modes = self.filters.iter().any(|filter| filter == MODES);
+        let filters: Vec<&String> = self.filters.iter().filter(|f| *f != MODES).collect();
+        let chosen = |scene: &BenchScene| {
+            let all = filters.is_empty() && (scene.compares_modes || !modes);
+            all || filters.iter().any(|filter| scene.name.contains(filter.as_str()))
+        };
+        let rows = |scene: &BenchScene| if modes { rows::modes() } else { rows::toggles(scene) };
+        scenes::all().into_iter().filter(chosen).map(|s| (s, rows(&s))).collect()
+    }
+}
+
+fn main() {
+    let arguments = Arguments::parse();
+    let selection = arguments.selection();
+    if arguments.list {
+        selection.iter().for_each(|(scene, _)| println!("{:<16} {}", scene.name, scene.shows));
+        return;
+    }
+    let plan = arguments.plan();
+    if arguments.bench {
+        table::preamble(&plan);
+    }
+    for (scene, rows) in selection {
+        let Some(built) = scene.build() else { continue };
+        if arguments.bench {
+            table::print(&scene, &built, &rows, &plan);
+        }
+    }
+}

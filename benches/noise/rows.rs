@@ -1,0 +1,77 @@
+//! The strategies that are compared.
+
+use flambeau::transport::strategy::{
+    Advanced, BoostMode, LightSelection, NeeEvaluation, Preset, Strategy,
+};
+
+use super::scenes::BenchScene;
+
+/// A row of a table.
+pub struct Row {
+    /// What it is called.
+    pub name: String,
+    /// What is on.
+    pub strategy: Strategy,
+}
+
+/// The modes, the one the talk states first.
+const MODES: [(BoostMode, &str); 4] = [
+    (BoostMode::Literal, "literal"),
+    (BoostMode::Clamped, "clamped"),
+    (BoostMode::Optimal, "optimal"),
+    (BoostMode::Stratified, "stratified"),
+];
+
+/// Collisions along the brightest chord that modes are compared at.
+const AMOUNTS: [f32; 5] = [0.25, 1.0, 4.0, 16.0, 64.0];
+
+/// Toggle upon toggle, from none to all, then all but one of the finer choices.
+pub fn toggles(scene: &BenchScene) -> Vec<Row> {
+    let baseline = Preset::Baseline.strategy();
+    let decoupling = Strategy { emission_decoupling: true, ..baseline };
+    let ratio = Strategy { emission_ratio_tracking: true, ..decoupling };
+    let boosted = |boost_mode| Strategy {
+        majorant_boost: true,
+        advanced: Advanced { boost_mode, ..Advanced::default() },
+        ..ratio
+    };
+    let full = Preset::Full.strategy();
+    let full_but = |advanced: Advanced| Strategy { advanced, ..full };
+    let default = Advanced::default();
+
+    let mut rows = vec![
+        row("baseline", baseline),
+        row("+ decoupling", decoupling),
+        row("+ ratio tracking", ratio),
+    ];
+    rows.extend(MODES.map(|(mode, name)| row(&format!("+ boost, {name}"), boosted(mode))));
+    rows.push(row(
+        "+ nee, point",
+        full_but(Advanced { nee_evaluation: NeeEvaluation::Point, ..default }),
+    ));
+    rows.push(row("+ nee, line = full", full));
+    if scene.many_lights {
+        let uniform = Advanced { light_selection: LightSelection::Uniform, ..default };
+        rows.push(row("full, lights uniform", full_but(uniform)));
+    }
+    let independent = Advanced { low_discrepancy: false, ..default };
+    rows.push(row("full, independent samples", full_but(independent)));
+    rows
+}
+
+/// Every mode of the boost at every amount, all else as in `full`.
+pub fn modes() -> Vec<Row> {
+    let full = Preset::Full.strategy();
+    let mut rows = vec![row("unboosted", Strategy { majorant_boost: false, ..full })];
+    for (boost_mode, name) in MODES {
+        rows.extend(AMOUNTS.map(|boost_amount| {
+            let advanced = Advanced { boost_mode, boost_amount, ..full.advanced };
+            row(&format!("{name} {boost_amount}"), Strategy { advanced, ..full })
+        }));
+    }
+    rows
+}
+
+fn row(name: &str, strategy: Strategy) -> Row {
+    Row { name: name.to_owned(), strategy }
+}

@@ -1,0 +1,117 @@
+//! What is rendered: the scene files beside this one, those of other renderers, a shipped one.
+
+use std::path::{Path, PathBuf};
+
+use flambeau::{
+    error::NO_PROGRESS,
+    scene::{self, Overrides, VolumeCache},
+    transport::Scene,
+};
+
+/// A scene of the tables.
+#[derive(Clone, Copy)]
+pub struct BenchScene {
+    /// Its name in the tables and for filters.
+    pub name: &'static str,
+    /// What it is there for.
+    pub shows: &'static str,
+    /// Whether it is one of those that boost modes are compared on.
+    pub compares_modes: bool,
+    /// Whether choosing among lights matters in it.
+    pub many_lights: bool,
+    file: &'static str,
+    folder: Folder,
+    set: &'static [&'static str],
+}
+
+/// Where a scene's volumes are looked for.
+#[derive(Clone, Copy, PartialEq)]
+enum Folder {
+    /// The folder of the scene file.
+    Own,
+    /// The folder of scenes that other renderers have rendered, outside the repository.
+    Peers,
+}
+
+const SCENES: &str = "benches/noise/scenes";
+
+/// Every scene.
+pub fn all() -> Vec<BenchScene> {
+    let own = |name, shows, file| BenchScene {
+        name,
+        shows,
+        file,
+        folder: Folder::Own,
+        compares_modes: false,
+        many_lights: false,
+        set: &[],
+    };
+    let peers = |name, shows, file| BenchScene { folder: Folder::Peers, ..own(name, shows, file) };
+    vec![
+        BenchScene {
+            compares_modes: true,
+            ..peers("fire_absorb", "a flame that only absorbs", "fire_absorb.toml")
+        },
+        peers("fire_on_floor", "a flame, a floor, a glossy sphere", "fire_on_floor.toml"),
+        BenchScene {
+            compares_modes: true,
+            ..own("thin_fire", "fire with hardly any soot", "thin_fire.toml")
+        },
+        BenchScene {
+            compares_modes: true,
+            ..own("behind_smoke_4", "fire behind smoke of optical depth 4", "behind_smoke.toml")
+        },
+        BenchScene {
+            set: &["volume.1.density.scale=20.0"],
+            ..own("behind_smoke_10", "fire behind smoke of optical depth 10", "behind_smoke.toml")
+        },
+        BenchScene {
+            compares_modes: true,
+            ..own("floor_glossy", "fire on a floor, a rough glossy sphere", "floor_glossy.toml")
+        },
+        own("fog", "fire in thin fog that fills all of space", "fog.toml"),
+        BenchScene {
+            many_lights: true,
+            set: &["film.size=[128, 128]", "environment.radiance=0.0"],
+            ..own("street", "200 torches in thin fog", "../../../scenes/street.toml")
+        },
+        own("no_soot", "fire without extinction, on a floor", "no_soot.toml"),
+        own("chromatic_smoke", "smoke that colors what shines through", "chromatic_smoke.toml"),
+    ]
+}
+
+impl BenchScene {
+    /// Reads and builds it; `None`, said aloud, where what it needs is absent.
+    pub fn build(&self) -> Option<Scene> {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let file = root.join(SCENES).join(self.file);
+        let folder = match self.folder {
+            Folder::Own => file.parent()?.to_owned(),
+            Folder::Peers => shared(root).join("peers"),
+        };
+        if !folder.exists() {
+            println!("\n## {}\n\nskipped: {} is not there", self.name, folder.display());
+            return None;
+        }
+        match self.read(&file, &folder) {
+            Ok(scene) => Some(scene),
+            Err(error) => {
+                println!("\n## {}\n\nskipped: {error}", self.name);
+                None
+            }
+        }
+    }
+
+    fn read(&self, file: &Path, folder: &Path) -> flambeau::error::Result<Scene> {
+        let text = std::fs::read_to_string(file)
+            .map_err(|error| flambeau::error::Error::io(file, error))?;
+        let set = self.set.iter().map(|&set| set.to_owned()).collect();
+        let settings = scene::parse(&text, self.file, folder, &Overrides { preset: None, set })?;
+        scene::build(&settings, &VolumeCache::default(), NO_PROGRESS)
+    }
+}
+
+/// The folder of large test data beside the repository.
+fn shared(root: &Path) -> PathBuf {
+    std::env::var_os("FLAMBEAU_SHARED").map_or_else(|| root.join("../shared"), PathBuf::from)
+}
