@@ -9,11 +9,12 @@ use std::time::{Duration, Instant};
 
 use egui::accesskit::Role;
 use egui::{Key, Modifiers};
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::wgpu::{WgpuTestRenderer, create_render_state, default_wgpu_setup};
 use egui_kittest::{Harness, SnapshotOptions};
 use flambeau::app::{App, Dialogs, Document, Level, Options};
 use flambeau::scene;
+use flambeau::transport::strategy::{Advanced, BoostMode, LightSelection, NeeEvaluation};
 
 /// A ball of glowing smoke on a small fixed film that ends after a few samples.
 const BALL: &str = r#"
@@ -157,7 +158,8 @@ fn toggles_answer_to_clicks_keys_presets_and_undo() {
     let Some(mut window) = Window::open(BALL) else { return };
     let decoupling = |window: &Window| window.document().settings.strategy.emission_decoupling;
     let tracking = |window: &Window| window.document().settings.strategy.emission_ratio_tracking;
-    assert!(decoupling(&window) && tracking(&window));
+    let nee = |window: &Window| window.document().settings.strategy.nee;
+    assert!(decoupling(&window) && tracking(&window) && nee(&window));
     assert!(window.has("No effect here: ratio tracking already collects"));
 
     window.press(Modifiers::NONE, Key::Num2);
@@ -165,12 +167,17 @@ fn toggles_answer_to_clicks_keys_presets_and_undo() {
     assert!(!window.has("No effect here"), "with tracking off, decoupling does something");
     window.click(Role::CheckBox, "Emission decoupling");
     assert!(!decoupling(&window));
-    assert!(window.has("No effect here: it needs decoupling or ratio tracking"));
+    assert!(!window.has("No effect here"), "looks at the fire still have steps to boost");
+    window.press(Modifiers::NONE, Key::Num4);
+    assert!(!nee(&window));
+    assert!(window.has("No effect here: it needs decoupling, ratio tracking or fire as a light"));
     window.click(Role::Button, "Full");
-    assert!(decoupling(&window) && tracking(&window));
+    assert!(decoupling(&window) && tracking(&window) && nee(&window));
 
     window.press(Modifiers::COMMAND, Key::Z);
-    assert!(!decoupling(&window) && !tracking(&window));
+    assert!(!decoupling(&window) && !tracking(&window) && !nee(&window));
+    window.press(Modifiers::COMMAND, Key::Z);
+    assert!(!decoupling(&window) && nee(&window));
     window.press(Modifiers::COMMAND, Key::Z);
     assert!(decoupling(&window) && !tracking(&window));
     window.press(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z);
@@ -182,7 +189,44 @@ fn where_nothing_glows_the_toggles_say_so() {
     let smoke = BALL.replace("\"source\", le = [2.0, 0.7, 0.2]", "\"none\"");
     let Some(window) = Window::open(&smoke) else { return };
     let idle = "No effect here: no volume in this scene emits light.";
-    assert_eq!(window.harness.query_all_by_label_contains(idle).count(), 3);
+    assert_eq!(window.harness.query_all_by_label_contains(idle).count(), 4);
+}
+
+#[test]
+fn fire_that_lights_nothing_says_so() {
+    let soot = BALL.replace("albedo = 0.4", "albedo = 0.0");
+    let Some(window) = Window::open(&soot) else { return };
+    assert!(window.has("No effect here: nothing here scatters or reflects light"));
+}
+
+#[test]
+fn every_finer_choice_can_be_made() {
+    let Some(mut window) = Window::open(BALL) else { return };
+    let advanced = |window: &Window| window.document().settings.strategy.advanced;
+    assert_eq!(advanced(&window), Advanced::default());
+    window.click(Role::DisclosureTriangle, "Advanced");
+    let modes = [
+        ("Optimal", BoostMode::Optimal),
+        ("Clamped", BoostMode::Clamped),
+        ("Literal", BoostMode::Literal),
+        ("Stratified", BoostMode::Stratified),
+    ];
+    for (name, mode) in modes {
+        window.click(Role::Button, name);
+        assert_eq!(advanced(&window).boost_mode, mode);
+    }
+    window.click(Role::Button, "Point");
+    assert_eq!(advanced(&window).nee_evaluation, NeeEvaluation::Point);
+    window.click(Role::Button, "Uniform");
+    assert_eq!(advanced(&window).light_selection, LightSelection::Uniform);
+    window.click(Role::CheckBox, "Spread samples");
+    assert!(!advanced(&window).low_discrepancy);
+    assert_eq!(window.app().editor().undo_name(), Some("spread samples"));
+
+    // What an idle toggle would use is dimmed.
+    window.press(Modifiers::NONE, Key::Num4);
+    let line = window.harness.get_by_role_and_label(Role::Button, "Line");
+    assert!(line.accesskit_node().is_disabled());
 }
 
 #[test]

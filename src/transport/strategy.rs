@@ -59,14 +59,14 @@ pub struct Advanced {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum BoostMode {
-    /// Evenly spread steps, with the transmittance estimated apart.
+    /// Spreads the steps evenly along the fire and measures the smoke in front of them apart.
     #[default]
     Stratified,
-    /// Steps where they lower the variance most for their cost.
+    /// Takes the steps where they lower the noise most for what they cost.
     Optimal,
-    /// The boosted majorant never asks for steps shorter than `boost_clamp_voxels`.
+    /// Takes more steps where the fire is bright, but never much shorter ones than a voxel.
     Clamped,
-    /// The talk's maximum of the two majorants, without the clamp.
+    /// Takes as many as the brightness asks for, as the talk states it, without that limit.
     Literal,
 }
 
@@ -74,10 +74,10 @@ pub enum BoostMode {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum NeeEvaluation {
-    /// Its emission along the whole line of sight.
+    /// Gathers its glow all along the line of sight. Less noise for each look.
     #[default]
     Line,
-    /// Its emission at the sampled point.
+    /// Takes its glow at one point. Cheaper, and noisier in and near the fire.
     Point,
 }
 
@@ -85,10 +85,10 @@ pub enum NeeEvaluation {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum LightSelection {
-    /// By power, distance and facing, through a hierarchy.
+    /// Prefers lights that are bright, near and in front. Best with many lights.
     #[default]
     Hierarchy,
-    /// Each with the same probability.
+    /// Gives each light the same chance, however weak or far.
     Uniform,
 }
 

@@ -1,5 +1,6 @@
 //! The panels, one file each.
 
+pub mod advanced;
 pub mod bars;
 pub mod camera;
 pub mod emission;
