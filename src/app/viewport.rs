@@ -234,6 +234,7 @@ mod tests {
             generation: 1,
             size: UVec2::new(2, 2),
             pixels: vec![[0.0; 4], [1.0; 4], [2.0; 4], [3.0; 4]],
+            steps: Vec::new(),
             complete: true,
             stats: Default::default(),
         };

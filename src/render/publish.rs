@@ -16,6 +16,8 @@ pub struct Picture {
     pub size: UVec2,
     /// Linear RGBA before exposure, row 0 on top. A pixel without samples shows its block.
     pub pixels: Vec<[f32; 4]>,
+    /// Mean tentative collisions of a sample, for the same pixels; empty unless asked for.
+    pub steps: Vec<f32>,
     /// Whether every pixel has at least one sample of its own.
     pub complete: bool,
     /// Figures at the time it was made.
@@ -64,6 +66,19 @@ pub fn resolve(film: &Film, pixels: &mut Vec<[f32; 4]>) -> Option<f64> {
         .map(|(y, line)| resolve_line(film, y as u32, line))
         .collect();
     FilmStats::from_lines(film, &lines).noise
+}
+
+/// Reads the mean tentative collisions of a sample into `steps`, which gets the size of the film. A
+/// pixel without samples shows its block. Runs on the threads of the calling pool.
+pub fn resolve_steps(film: &Film, steps: &mut Vec<f32>) {
+    let size = film.size();
+    steps.resize(size.x as usize * size.y as usize, 0.0);
+    steps.par_chunks_mut(size.x as usize).enumerate().for_each(|(y, line)| {
+        for (x, out) in line.iter_mut().enumerate() {
+            let shown = shown_pixel(film, UVec2::new(x as u32, y as u32));
+            *out = PixelEstimate::of(film, shown).map_or(0.0, |pixel| pixel.steps() as f32);
+        }
+    });
 }
 
 fn resolve_line(film: &Film, y: u32, line: &mut [[f32; 4]]) -> LineStats {
@@ -139,6 +154,18 @@ mod tests {
         assert_eq!(red_at(17, 0), 20.0);
         assert_eq!(pixels[0], [4.0, 0.0, 0.0, 0.25]);
         assert_eq!(pixels[16 * 21], [0.0; 4]);
+    }
+
+    #[test]
+    fn steps_are_means_and_blocks_as_in_the_picture() {
+        let mut film = Film::new(UVec2::new(4, 2)).unwrap();
+        let steps = |steps| PathSample { tracking_steps: steps, ..Default::default() };
+        film.add(UVec2::new(2, 0), &steps(5));
+        film.add(UVec2::new(1, 1), &steps(2));
+        film.add(UVec2::new(1, 1), &steps(1));
+        let mut read = vec![9.0; 50];
+        resolve_steps(&film, &mut read);
+        assert_eq!(read, [0.0, 0.0, 5.0, 5.0, 0.0, 1.5, 5.0, 5.0]);
     }
 
     #[test]
