@@ -406,20 +406,21 @@ fn steps_come_when_asked_for_even_after_the_end() {
     let (session, published) = session();
     session.start(request(&Shade::new(1.0), 4, 1));
     let picture = wait(&session, &published, |picture| picture.stats.finished);
-    assert!(picture.steps.is_empty());
+    assert!(picture.steps.mean.is_empty());
 
     session.set_shows_steps(true);
-    let picture = wait(&session, &published, |picture| !picture.steps.is_empty());
+    let picture = wait(&session, &published, |picture| !picture.steps.mean.is_empty());
     assert_eq!((picture.generation, picture.stats.samples_per_pixel), (1, 4.0));
-    assert_eq!(picture.steps, vec![STEPS as f32; picture.pixels.len()]);
+    assert_eq!(picture.steps.mean, vec![STEPS as f32; picture.pixels.len()]);
+    assert_eq!(picture.steps.range, Some([STEPS as f32; 2]));
     session.start(request(&Shade::new(1.0), 4, 2));
     let picture = wait(&session, &published, |picture| picture.generation == 2);
-    assert_eq!(picture.steps.len(), picture.pixels.len());
+    assert_eq!(picture.steps.mean.len(), picture.pixels.len());
 
     session.set_shows_steps(false);
     session.start(request(&Shade::new(1.0), 4, 3));
     let picture = wait(&session, &published, |picture| picture.generation == 3);
-    assert!(picture.steps.is_empty());
+    assert!(picture.steps.mean.is_empty());
 }
 
 #[test]

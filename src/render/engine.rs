@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use super::film::Film;
 use super::pool::{Failure, Pool};
-use super::publish::{RenderStats, render_stats, resolve, resolve_steps};
+use super::publish::{RenderStats, StepMap, render_stats, resolve, resolve_steps};
 use super::schedule::{Limits, Next, Schedule};
 use crate::transport::PixelSampler;
 
@@ -79,7 +79,7 @@ impl Engine {
         &mut self,
         pool: &Pool,
         pixels: &mut Vec<[f32; 4]>,
-        steps: Option<&mut Vec<f32>>,
+        steps: Option<&mut StepMap>,
     ) -> RenderStats {
         let start = Instant::now();
         let film = &self.film;

@@ -13,7 +13,7 @@ use super::engine::{Engine, Step};
 use super::film::Film;
 use super::headless::same_size;
 use super::pool::{Failure, Pool, Priority};
-use super::publish::Picture;
+use super::publish::{Picture, StepMap};
 use super::schedule::Limits;
 use crate::error::{Error, Result};
 use crate::transport::PixelSampler;
@@ -338,7 +338,7 @@ impl Worker {
         let (mut pixels, mut steps) = self.spare_memory();
         let Some(job) = &mut self.job else { return };
         if !self.shows_steps {
-            steps = Vec::new();
+            steps = StepMap::default();
         }
         let wanted = self.shows_steps.then_some(&mut steps);
         let stats = job.engine.picture(&self.pool, &mut pixels, wanted);
@@ -356,7 +356,7 @@ impl Worker {
     }
 
     /// Memory for a picture: that of an old one if nobody holds it any more.
-    fn spare_memory(&mut self) -> (Vec<[f32; 4]>, Vec<f32>) {
+    fn spare_memory(&mut self) -> (Vec<[f32; 4]>, StepMap) {
         let free = self.spare.iter().position(|picture| Arc::strong_count(picture) == 1);
         let free = free.map(|index| self.spare.swap_remove(index));
         // Two are kept: the latest and the one the window may still be reading.
