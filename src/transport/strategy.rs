@@ -35,13 +35,14 @@ pub struct Advanced {
     /// How the majorant boost places its steps. `stratified` spreads them evenly along the ray and
     /// measures the smoke in front of them apart; `optimal` takes them where they lower the noise
     /// most; `clamped` takes more where the fire is bright, never much shorter than a voxel;
-    /// `literal` is the same without that limit, as the talk states it.
+    /// `literal` is the same without that limit, as the talk states it. The first two are walks of
+    /// their own; decoupling without ratio tracking takes `clamped` in their place.
     pub boost_mode: BoostMode,
     /// Extra steps that the majorant boost takes along the brightest line through the volume.
     /// More steps, less noise; 0 boosts nothing.
     #[schemars(range(min = 0.0, max = 1000.0))]
     pub boost_amount: f32,
-    /// With `boost_mode = "clamped"`: the shortest boosted step, counted in voxels.
+    /// With `boost_mode = "clamped"` or where that stands in: the shortest boosted step, counted in voxels.
     #[schemars(range(min = 0.01, max = 1000.0), extend("unit" = "voxels"))]
     pub boost_clamp_voxels: f32,
     /// What a look at the fire brings back. `line` gathers its glow all along the line of sight;

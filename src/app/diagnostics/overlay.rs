@@ -14,9 +14,9 @@ const MOST_BOXES: usize = 128;
 /// Width of their edges in points.
 const LINE: f32 = 1.2;
 /// Share of a cell's width that its dot takes.
-const DOT: f32 = 0.4;
+const DOT: f32 = 0.22;
 /// Sides of the smallest and the largest dot in points.
-const DOT_SIDES: [f32; 2] = [1.5, 14.0];
+const DOT_SIDES: [f32; 2] = [1.5, 10.0];
 /// How much of the picture a dot covers.
 const DOT_OPACITY: f32 = 0.8;
 /// What is nearer to the camera than this share of a cell's edge is cut off.

@@ -26,6 +26,7 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
 }
 
 fn boost(ui: &mut Ui, strategy: &mut Strategy, opened: Advanced, edit: &mut Option<&'static str>) {
+    let clamps = is_clamped(strategy);
     let advanced = &mut strategy.advanced;
     ui.add_enabled_ui(strategy.majorant_boost, |ui| {
         if choice(ui, "Boost mode", "strategy.advanced.boost_mode", &mut advanced.boost_mode) {
@@ -34,12 +35,24 @@ fn boost(ui: &mut Ui, strategy: &mut Strategy, opened: Advanced, edit: &mut Opti
         if boost_amount(opened).show(ui, &mut advanced.boost_amount) {
             *edit = Some("boost amount");
         }
-        ui.add_enabled_ui(advanced.boost_mode == BoostMode::Clamped, |ui| {
+        ui.add_enabled_ui(clamps, |ui| {
             if boost_clamp(opened).show(ui, &mut advanced.boost_clamp_voxels) {
                 *edit = Some("boost clamp");
             }
         });
     });
+}
+
+/// Whether the boost heeds the shortest step: the modes that have a walk of their own leave it to
+/// decoupling, which shares the walk of scattering.
+fn is_clamped(strategy: &Strategy) -> bool {
+    match strategy.advanced.boost_mode {
+        BoostMode::Clamped => true,
+        BoostMode::Literal => false,
+        BoostMode::Stratified | BoostMode::Optimal => {
+            strategy.emission_decoupling && !strategy.emission_ratio_tracking
+        }
+    }
 }
 
 fn fire_as_light(ui: &mut Ui, strategy: &mut Strategy, edit: &mut Option<&'static str>) {
