@@ -213,12 +213,18 @@ impl Gathering {
 
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
     use super::*;
     use crate::error::NO_PROGRESS;
-    use crate::scene::{VolumeCache, build, parse};
+    use crate::scene::{Overrides, Settings, VolumeCache, build, parse};
 
-    fn scene(text: &str) -> Scene {
-        build(&parse(text, "").unwrap(), &VolumeCache::default(), NO_PROGRESS).unwrap()
+    fn settings() -> Settings {
+        parse(TWO, "", Path::new(""), &Overrides::default()).unwrap()
+    }
+
+    fn scene() -> Scene {
+        build(&settings(), &VolumeCache::default(), NO_PROGRESS).unwrap()
     }
 
     const TWO: &str = r#"
@@ -244,7 +250,7 @@ density = { scale = 0.1 }
 
     #[test]
     fn cells_lie_where_their_volume_is_placed() {
-        let scene = scene(TWO);
+        let scene = scene();
         let cells = Cells::gather(scene.world.instances(), CellValue::Majorant);
         let uniform: Vec<_> = cells.strongest.iter().filter(|cell| cell.value > 6.9).collect();
         let [uniform] = uniform.as_slice() else { panic!("{} uniform cells", uniform.len()) };
@@ -264,7 +270,7 @@ density = { scale = 0.1 }
     /// The box: ε V = 3; its cells and those of the noise sum to the volumes' power.
     #[test]
     fn powers_sum_to_those_of_the_volumes() {
-        let scene = scene(TWO);
+        let scene = scene();
         let cells = Cells::gather(scene.world.instances(), CellValue::Energy);
         assert!(cells.total <= MOST, "the sum needs all {} cells", cells.total);
         let sum: f64 = cells.strongest.iter().map(|cell| f64::from(cell.value)).sum();
@@ -279,7 +285,7 @@ density = { scale = 0.1 }
 
     #[test]
     fn only_the_strongest_of_many_are_kept_and_all_are_counted() {
-        let scene = scene(TWO);
+        let scene = scene();
         let instance = &scene.world.instances()[1];
         let mut sieve = Sieve::default();
         let unit = Aabb::centered(Vec3A::ONE);
@@ -300,7 +306,7 @@ density = { scale = 0.1 }
 
     #[test]
     fn a_moved_camera_keeps_the_cells_and_a_moved_volume_does_not() {
-        let mut settings = parse(TWO, "").unwrap();
+        let mut settings = settings();
         let cache = VolumeCache::default();
         let mut source = || {
             let scene = build(&settings, &cache, NO_PROGRESS).unwrap();
