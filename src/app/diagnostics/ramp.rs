@@ -75,13 +75,14 @@ impl Scale {
     pub fn rounded(range: [f32; 2]) -> Self {
         let Self { low, high } = Self::exact(range);
         let round = |value: f32, up: bool| {
-            let decade = 10_f32.powf(value.log10().floor());
+            let value = f64::from(value);
+            let decade = 10_f64.powf(value.log10().floor());
             let steps = [1.0, 2.0, 5.0, 10.0].map(|step| step * decade);
             let found = match up {
                 true => steps.into_iter().find(|&step| step >= value * 0.9999),
                 false => steps.into_iter().rev().find(|&step| step <= value * 1.0001),
             };
-            found.unwrap_or(value)
+            found.unwrap_or(value) as f32
         };
         Self { low: round(low, false), high: round(high, true) }
     }
