@@ -9,11 +9,12 @@ use std::time::{Duration, Instant};
 
 use egui::accesskit::Role;
 use egui::{Key, Modifiers};
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::wgpu::{WgpuTestRenderer, create_render_state, default_wgpu_setup};
 use egui_kittest::{Harness, SnapshotOptions};
-use flambeau::app::{App, Dialogs, Document, Level, Options};
+use flambeau::app::{App, Dialogs, Document, Level, Options, Scale, ramp_color};
 use flambeau::scene;
+use flambeau::transport::strategy::{Advanced, BoostMode, LightSelection, NeeEvaluation};
 
 /// A ball of glowing smoke on a small fixed film that ends after a few samples.
 const BALL: &str = r#"
@@ -131,6 +132,16 @@ impl Window {
         path
     }
 
+    /// Runs frames until a text is there.
+    fn until_it_says(&mut self, text: &str) {
+        let start = Instant::now();
+        while !self.has(text) {
+            assert!(start.elapsed() < Duration::from_secs(60), "still waiting for {text:?}");
+            std::thread::sleep(Duration::from_millis(5));
+            self.settle();
+        }
+    }
+
     fn has(&self, text: &str) -> bool {
         self.harness.query_all_by_label_contains(text).next().is_some()
     }
@@ -157,7 +168,8 @@ fn toggles_answer_to_clicks_keys_presets_and_undo() {
     let Some(mut window) = Window::open(BALL) else { return };
     let decoupling = |window: &Window| window.document().settings.strategy.emission_decoupling;
     let tracking = |window: &Window| window.document().settings.strategy.emission_ratio_tracking;
-    assert!(decoupling(&window) && tracking(&window));
+    let nee = |window: &Window| window.document().settings.strategy.nee;
+    assert!(decoupling(&window) && tracking(&window) && nee(&window));
     assert!(window.has("No effect here: ratio tracking already collects"));
 
     window.press(Modifiers::NONE, Key::Num2);
@@ -165,12 +177,17 @@ fn toggles_answer_to_clicks_keys_presets_and_undo() {
     assert!(!window.has("No effect here"), "with tracking off, decoupling does something");
     window.click(Role::CheckBox, "Emission decoupling");
     assert!(!decoupling(&window));
-    assert!(window.has("No effect here: it needs decoupling or ratio tracking"));
+    assert!(!window.has("No effect here"), "looks at the fire still have steps to boost");
+    window.press(Modifiers::NONE, Key::Num4);
+    assert!(!nee(&window));
+    assert!(window.has("No effect here: it needs decoupling, ratio tracking or fire as a light"));
     window.click(Role::Button, "Full");
-    assert!(decoupling(&window) && tracking(&window));
+    assert!(decoupling(&window) && tracking(&window) && nee(&window));
 
     window.press(Modifiers::COMMAND, Key::Z);
-    assert!(!decoupling(&window) && !tracking(&window));
+    assert!(!decoupling(&window) && !tracking(&window) && !nee(&window));
+    window.press(Modifiers::COMMAND, Key::Z);
+    assert!(!decoupling(&window) && nee(&window));
     window.press(Modifiers::COMMAND, Key::Z);
     assert!(decoupling(&window) && !tracking(&window));
     window.press(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z);
@@ -182,7 +199,44 @@ fn where_nothing_glows_the_toggles_say_so() {
     let smoke = BALL.replace("\"source\", le = [2.0, 0.7, 0.2]", "\"none\"");
     let Some(window) = Window::open(&smoke) else { return };
     let idle = "No effect here: no volume in this scene emits light.";
-    assert_eq!(window.harness.query_all_by_label_contains(idle).count(), 3);
+    assert_eq!(window.harness.query_all_by_label_contains(idle).count(), 4);
+}
+
+#[test]
+fn fire_that_lights_nothing_says_so() {
+    let soot = BALL.replace("albedo = 0.4", "albedo = 0.0");
+    let Some(window) = Window::open(&soot) else { return };
+    assert!(window.has("No effect here: nothing here scatters or reflects light"));
+}
+
+#[test]
+fn every_finer_choice_can_be_made() {
+    let Some(mut window) = Window::open(BALL) else { return };
+    let advanced = |window: &Window| window.document().settings.strategy.advanced;
+    assert_eq!(advanced(&window), Advanced::default());
+    window.click(Role::DisclosureTriangle, "Advanced");
+    let modes = [
+        ("Optimal", BoostMode::Optimal),
+        ("Clamped", BoostMode::Clamped),
+        ("Literal", BoostMode::Literal),
+        ("Stratified", BoostMode::Stratified),
+    ];
+    for (name, mode) in modes {
+        window.click(Role::Button, name);
+        assert_eq!(advanced(&window).boost_mode, mode);
+    }
+    window.click(Role::Button, "Point");
+    assert_eq!(advanced(&window).nee_evaluation, NeeEvaluation::Point);
+    window.click(Role::Button, "Uniform");
+    assert_eq!(advanced(&window).light_selection, LightSelection::Uniform);
+    window.click(Role::CheckBox, "Spread samples");
+    assert!(!advanced(&window).low_discrepancy);
+    assert_eq!(window.app().editor().undo_name(), Some("spread samples"));
+
+    // What an idle toggle would use is dimmed.
+    window.press(Modifiers::NONE, Key::Num4);
+    let line = window.harness.get_by_role_and_label(Role::Button, "Line");
+    assert!(line.accesskit_node().is_disabled());
 }
 
 #[test]
@@ -374,6 +428,127 @@ fn saved_files_hold_what_is_shown() {
         }
     }
     assert!(bright > 100, "the ball is not in the picture");
+}
+
+/// The picture's part of the window, pixel by pixel.
+fn shown_picture(window: &mut Window) -> image::RgbaImage {
+    let area = window.harness.get_by_role_and_label(Role::Image, "Picture").rect();
+    let shown = window.harness.render().unwrap();
+    let [x, y, width, height] =
+        [area.left(), area.top(), area.width(), area.height()].map(|side| side.round() as u32);
+    image::imageops::crop_imm(&shown, x, y, width, height).to_image()
+}
+
+/// How many pixels of two pictures differ, between these rows.
+fn differing(a: &image::RgbaImage, b: &image::RgbaImage, rows: std::ops::Range<u32>) -> usize {
+    let pixels = std::iter::zip(a.enumerate_pixels(), b.pixels());
+    pixels.filter(|((_, y, a), b)| rows.contains(y) && a != b).count()
+}
+
+#[test]
+fn cells_are_drawn_over_the_picture_and_follow_the_camera() {
+    let noise = r#"
+[[volume]]
+shape = "noise"
+translate = [0, 0, 1.2]
+frequency = 3.0
+density = { scale = 9.0 }
+"#;
+    let Some(mut window) = Window::open(&(BALL.to_owned() + noise)) else { return };
+    window.click(Role::Button, "Fixed");
+    window.until_finished();
+    let opened = window.document().clone();
+    let plain = shown_picture(&mut window);
+    let above_legend = 0..plain.height() - 110;
+    window.click(Role::DisclosureTriangle, "Diagnostics");
+    assert!(!window.has("Majorant, 1/length"), "nothing is drawn that was not asked for");
+
+    window.click(Role::Button, "Majorants");
+    window.until_it_says("Majorant, 1/length");
+    assert!(window.has(" cells"), "the legend counts them");
+    let drawn = shown_picture(&mut window);
+    assert!(differing(&plain, &drawn, above_legend.clone()) > 500, "no cells are drawn");
+    assert_eq!(window.document(), &opened, "what is shown is no edit");
+
+    // The camera moves: the same cells elsewhere.
+    let start = window.harness.get_by_role_and_label(Role::Image, "Picture").rect().center();
+    window.harness.drag_at(start);
+    window.harness.hover_at(start + egui::vec2(60.0, 0.0));
+    window.harness.drop_at(start + egui::vec2(60.0, 0.0));
+    window.harness.step();
+    window.until_finished();
+    assert!(window.has("Majorant, 1/length"));
+    let turned = shown_picture(&mut window);
+    assert!(differing(&drawn, &turned, above_legend) > 500);
+
+    window.click(Role::Button, "Off");
+    assert!(!window.has("Majorant, 1/length"));
+}
+
+/// The ball emits ε = μ_a · le with lum ε = 1.2 · (0.2126 · 2 + 0.7152 · 0.7 + 0.0722 · 0.2) = 1.128
+/// over 4π/3: a power of 4.726, in one cell.
+#[test]
+fn the_energy_of_cells_has_a_legend_with_numbers() {
+    let Some(mut window) = Window::open(BALL) else { return };
+    window.until_finished();
+    window.click(Role::DisclosureTriangle, "Diagnostics");
+    window.click(Role::Button, "Energy");
+    window.until_it_says("Emitted power per cell");
+    assert!(window.has("One cell"));
+    assert_eq!(window.harness.query_all_by_label("4.726").count(), 3, "both ends and the middle");
+
+    let smoke = BALL.replace("\"source\", le = [2.0, 0.7, 0.2]", "\"none\"");
+    let path = window.folder.path().join("smoke.toml");
+    std::fs::write(&path, smoke).unwrap();
+    window.harness.input_mut().dropped_files.push(Arc::new(Dropped(path)));
+    window.until_it_says("No volume here emits light.");
+}
+
+#[test]
+fn the_map_of_steps_colors_each_pixel_by_what_it_costs() {
+    let Some(mut window) = Window::open(BALL) else { return };
+    window.click(Role::Button, "Fixed");
+    window.until_finished();
+    let plain = shown_picture(&mut window);
+    window.click(Role::DisclosureTriangle, "Diagnostics");
+    window.click(Role::CheckBox, "Map of tracking steps");
+    window.until("the steps are there", |app| {
+        app.engine().picture().is_some_and(|picture| !picture.steps.mean.is_empty())
+    });
+    window.harness.remove_cursor();
+    window.settle();
+    let title = window.harness.get_by_label("Tracking steps per sample").rect();
+    let picture = window.app().engine().picture().unwrap().clone();
+    let scale = Scale::rounded(picture.steps.range.unwrap());
+    let area = window.harness.get_by_role_and_label(Role::Image, "Picture").rect();
+    let shown = window.harness.render().unwrap();
+    let enlarged = (area.width() / 64.0).min(area.height() / 48.0).floor();
+    let corner = (area.center() - enlarged * egui::vec2(32.0, 24.0)).round();
+    let mut bright = 0;
+    for (index, &steps) in picture.steps.mean.iter().enumerate() {
+        let (x, y) = ((index % 64) as f32, (index / 64) as f32);
+        let at = corner + enlarged * egui::vec2(x + 0.5, y + 0.5);
+        if at.y > title.top() - 20.0 {
+            continue;
+        }
+        let expected = match steps > 0.0 {
+            true => ramp_color(scale.place(steps)).to_array(),
+            false => [0, 0, 0, 255],
+        };
+        let pixel = shown.get_pixel(at.x as u32, at.y as u32).0;
+        for channel in 0..3 {
+            let off = i32::from(expected[channel]) - i32::from(pixel[channel]);
+            assert!(off.abs() <= 1, "pixel {x},{y}: {expected:?} for {steps} steps, not {pixel:?}");
+        }
+        bright += i32::from(steps > 0.0);
+    }
+    assert!(bright > 500, "the ball costs nothing");
+
+    window.click(Role::CheckBox, "Map of tracking steps");
+    assert!(!window.has("Tracking steps per sample"));
+    window.harness.remove_cursor();
+    window.settle();
+    assert_eq!(differing(&plain, &shown_picture(&mut window), 0..plain.height()), 0);
 }
 
 #[test]

@@ -18,6 +18,8 @@ use glam::UVec2;
 
 const SIZE: UVec2 = UVec2::new(75, 50);
 const PATIENCE: Duration = Duration::from_secs(20);
+/// Steps of each path of a [`Shade`].
+const STEPS: u32 = 5;
 
 /// A number in [0, 1) for each pixel and sample.
 fn noise(pixel: UVec2, sample: u32) -> f32 {
@@ -252,7 +254,11 @@ impl PixelSampler for Shade {
             std::thread::sleep(self.delay);
         }
         assert_ne!(self.panic_at, Some((pixel, sample)), "a fault on purpose");
-        PathSample { background: Rgb::splat(self.value), ..Default::default() }
+        PathSample {
+            background: Rgb::splat(self.value),
+            tracking_steps: STEPS,
+            ..Default::default()
+        }
     }
 }
 
@@ -393,6 +399,28 @@ fn pause_holds_and_resume_goes_on() {
     assert_eq!(edited.calls(), picture.stats.paths);
     session.set_paused(false);
     wait(&session, &published, |picture| picture.complete && picture.generation == 2);
+}
+
+#[test]
+fn steps_come_when_asked_for_even_after_the_end() {
+    let (session, published) = session();
+    session.start(request(&Shade::new(1.0), 4, 1));
+    let picture = wait(&session, &published, |picture| picture.stats.finished);
+    assert!(picture.steps.mean.is_empty());
+
+    session.set_shows_steps(true);
+    let picture = wait(&session, &published, |picture| !picture.steps.mean.is_empty());
+    assert_eq!((picture.generation, picture.stats.samples_per_pixel), (1, 4.0));
+    assert_eq!(picture.steps.mean, vec![STEPS as f32; picture.pixels.len()]);
+    assert_eq!(picture.steps.range, Some([STEPS as f32; 2]));
+    session.start(request(&Shade::new(1.0), 4, 2));
+    let picture = wait(&session, &published, |picture| picture.generation == 2);
+    assert_eq!(picture.steps.mean.len(), picture.pixels.len());
+
+    session.set_shows_steps(false);
+    session.start(request(&Shade::new(1.0), 4, 3));
+    let picture = wait(&session, &published, |picture| picture.generation == 3);
+    assert!(picture.steps.mean.is_empty());
 }
 
 #[test]

@@ -20,6 +20,7 @@ pub enum Command {
     EmissionDecoupling,
     EmissionRatioTracking,
     MajorantBoost,
+    FireAsLight,
     FrameVolume,
     FitPicture,
     ZoomToPixels,
@@ -34,7 +35,7 @@ use Command as C;
 
 impl Command {
     /// All of them, in the order of the help page.
-    pub const ALL: [Self; 21] = [
+    pub const ALL: [Self; 22] = [
         C::Open,
         C::OpenPath,
         C::SaveExr,
@@ -48,6 +49,7 @@ impl Command {
         C::EmissionDecoupling,
         C::EmissionRatioTracking,
         C::MajorantBoost,
+        C::FireAsLight,
         C::FrameVolume,
         C::FitPicture,
         C::ZoomToPixels,
@@ -74,6 +76,7 @@ impl Command {
             C::EmissionDecoupling => "Emission decoupling",
             C::EmissionRatioTracking => "Emission ratio tracking",
             C::MajorantBoost => "Majorant boost",
+            C::FireAsLight => "Fire as a light",
             C::FrameVolume => "Frame the volume",
             C::FitPicture => "Fit the picture",
             C::ZoomToPixels => "Zoom to pixels",
@@ -100,7 +103,10 @@ impl Command {
             C::Redo => "Make the edit that was taken back again.",
             C::PauseResume => "Stop sampling and keep the picture, or go on where it stopped.",
             C::Restart => "Throw the samples away and start again.",
-            C::EmissionDecoupling | C::EmissionRatioTracking | C::MajorantBoost => {
+            C::EmissionDecoupling
+            | C::EmissionRatioTracking
+            | C::MajorantBoost
+            | C::FireAsLight => {
                 "Switch this strategy on or off; the picture stays the same, its noise does not."
             }
             C::FrameVolume => "Move the camera so that all volumes are in the picture.",
@@ -130,6 +136,7 @@ impl Command {
             C::EmissionDecoupling => (Modifiers::NONE, Key::Num1),
             C::EmissionRatioTracking => (Modifiers::NONE, Key::Num2),
             C::MajorantBoost => (Modifiers::NONE, Key::Num3),
+            C::FireAsLight => (Modifiers::NONE, Key::Num4),
             C::FrameVolume => (Modifiers::NONE, Key::F),
             C::FitPicture => (Modifiers::NONE, Key::Home),
             C::ZoomToPixels => (Modifiers::NONE, Key::Z),

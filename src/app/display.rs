@@ -1,5 +1,5 @@
 //! The picture on the graphics card: upload when there is a new one, and the draw call that
-//! exposes, curves and codes it (`display.wgsl`).
+//! exposes, curves and codes it, or colors its steps (`display.wgsl`).
 
 use std::num::NonZeroU64;
 use std::sync::Arc;
@@ -7,6 +7,7 @@ use std::sync::Arc;
 use egui_wgpu::{CallbackResources, CallbackTrait, RenderState, ScreenDescriptor};
 use glam::{UVec2, Vec2};
 
+use super::diagnostics::{STOPS, Scale, stops};
 use super::theme::color;
 use super::zoom::Placement;
 use crate::image::tone::{Tone, ToneCurve};
@@ -23,6 +24,34 @@ struct View {
     curve: u32,
     encode: u32,
     surround: [f32; 4],
+    scale: [f32; 4],
+    ramp: [[f32; 4]; STOPS],
+}
+
+/// What of a picture is shown.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Look {
+    /// Its light, exposed and curved.
+    Picture(Tone),
+    /// The tracking steps of its pixels, on this scale.
+    Steps(Scale),
+}
+
+impl Look {
+    /// Floats of a pixel on the graphics card.
+    fn format(self) -> wgpu::TextureFormat {
+        match self {
+            Self::Picture(_) => wgpu::TextureFormat::Rgba32Float,
+            Self::Steps(_) => wgpu::TextureFormat::R32Float,
+        }
+    }
+
+    fn data(self, picture: &Picture) -> &[u8] {
+        match self {
+            Self::Picture(_) => bytemuck::cast_slice(&picture.pixels),
+            Self::Steps(_) => bytemuck::cast_slice(&picture.steps.mean),
+        }
+    }
 }
 
 /// What the draw call needs on the graphics card; lives among egui's callback resources.
@@ -37,6 +66,7 @@ struct Display {
 /// The uploaded picture.
 struct Shown {
     picture: Arc<Picture>,
+    format: wgpu::TextureFormat,
     texture: wgpu::Texture,
     bindings: wgpu::BindGroup,
 }
@@ -60,9 +90,9 @@ pub fn paint(
     corner: Vec2,
     picture: Arc<Picture>,
     placement: Placement,
-    tone: Tone,
+    look: Look,
 ) {
-    let callback = PaintPicture { picture, corner: corner + placement.corner, placement, tone };
+    let callback = PaintPicture { picture, corner: corner + placement.corner, placement, look };
     painter.add(egui_wgpu::Callback::new_paint_callback(rect, callback));
 }
 
@@ -71,7 +101,7 @@ struct PaintPicture {
     /// The picture's upper left corner in the framebuffer.
     corner: Vec2,
     placement: Placement,
-    tone: Tone,
+    look: Look,
 }
 
 impl CallbackTrait for PaintPicture {
@@ -84,7 +114,7 @@ impl CallbackTrait for PaintPicture {
         resources: &mut CallbackResources,
     ) -> Vec<wgpu::CommandBuffer> {
         if let Some(display) = resources.get_mut::<Display>() {
-            display.upload(device, queue, &self.picture);
+            display.upload(device, queue, &self.picture, self.look);
             let view = self.view(display.encode);
             queue.write_buffer(&display.view, 0, bytemuck::bytes_of(&view));
         }
@@ -108,17 +138,29 @@ impl CallbackTrait for PaintPicture {
 impl PaintPicture {
     fn view(&self, encode: bool) -> View {
         let surround = egui::Rgba::from(color::SURROUND);
+        let (exposure, curve, scale) = match self.look {
+            Look::Picture(Tone { exposure, curve: ToneCurve::Linear }) => {
+                (exposure.exp2(), 0, None)
+            }
+            Look::Picture(Tone { exposure, curve: ToneCurve::Filmic }) => {
+                (exposure.exp2(), 1, None)
+            }
+            Look::Steps(scale) => (1.0, 2, Some(scale)),
+        };
+        let scale = scale.map_or([0.0; 4], |Scale { low, high }| {
+            let span = (high / low).ln();
+            [low.ln(), if span > 0.0 { 1.0 / span } else { 0.0 }, 0.0, 0.0]
+        });
         View {
             origin: (-self.corner / self.placement.scale).into(),
             step: 1.0 / self.placement.scale,
-            exposure: self.tone.exposure.exp2(),
+            exposure,
             size: self.picture.size.into(),
-            curve: match self.tone.curve {
-                ToneCurve::Linear => 0,
-                ToneCurve::Filmic => 1,
-            },
+            curve,
             encode: u32::from(encode),
             surround: surround.to_array(),
+            scale,
+            ramp: stops().map(|[r, g, b]| [r, g, b, 1.0]),
         }
     }
 }
@@ -162,38 +204,52 @@ impl Display {
         Self { pipeline, layout, view, encode: !target.is_srgb(), shown: None }
     }
 
-    /// Brings `picture` onto the graphics card unless it is there already.
-    fn upload(&mut self, device: &wgpu::Device, queue: &wgpu::Queue, picture: &Arc<Picture>) {
-        if self.shown.as_ref().is_some_and(|shown| Arc::ptr_eq(&shown.picture, picture)) {
+    /// Brings what is shown of `picture` onto the graphics card unless it is there already.
+    fn upload(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        picture: &Arc<Picture>,
+        look: Look,
+    ) {
+        let format = look.format();
+        let is_there =
+            |shown: &Shown| Arc::ptr_eq(&shown.picture, picture) && shown.format == format;
+        if self.shown.as_ref().is_some_and(is_there) {
             return;
         }
-        let reusable = self.shown.take().filter(|shown| shown.picture.size == picture.size);
-        let (texture, bindings) = match reusable {
+        let fits = |shown: &Shown| shown.picture.size == picture.size && shown.format == format;
+        let (texture, bindings) = match self.shown.take().filter(fits) {
             Some(shown) => (shown.texture, shown.bindings),
-            None => self.allocate(device, picture.size),
+            None => self.allocate(device, picture.size, format),
         };
         let UVec2 { x: width, y: height } = picture.size;
         queue.write_texture(
             texture.as_image_copy(),
-            bytemuck::cast_slice(&picture.pixels),
+            look.data(picture),
             wgpu::TexelCopyBufferLayout {
                 offset: 0,
-                bytes_per_row: Some(size_of::<[f32; 4]>() as u32 * width),
+                bytes_per_row: format.block_copy_size(None).map(|bytes| bytes * width),
                 rows_per_image: Some(height),
             },
             wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
         );
-        self.shown = Some(Shown { picture: picture.clone(), texture, bindings });
+        self.shown = Some(Shown { picture: picture.clone(), format, texture, bindings });
     }
 
-    fn allocate(&self, device: &wgpu::Device, size: UVec2) -> (wgpu::Texture, wgpu::BindGroup) {
+    fn allocate(
+        &self,
+        device: &wgpu::Device,
+        size: UVec2,
+        format: wgpu::TextureFormat,
+    ) -> (wgpu::Texture, wgpu::BindGroup) {
         let texture = device.create_texture(&wgpu::TextureDescriptor {
             label: Some("picture"),
             size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
             mip_level_count: 1,
             sample_count: 1,
             dimension: wgpu::TextureDimension::D2,
-            format: wgpu::TextureFormat::Rgba32Float,
+            format,
             usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
             view_formats: &[],
         });

@@ -1,4 +1,5 @@
-// Shows the picture: exposure, tone curve and sRGB coding, one framebuffer pixel at a time.
+// Shows the picture, one framebuffer pixel at a time: exposure, tone curve and sRGB coding, or one
+// number a pixel as a color of a ramp.
 // The curve mirrors src/image/tone.rs; a test holds the two against each other.
 
 struct View {
@@ -10,12 +11,16 @@ struct View {
     exposure: f32,
     // Size of the picture in pixels; zero where there is none yet.
     size: vec2u,
-    // 0: linear, 1: filmic.
+    // 0: linear, 1: filmic, 2: the ramp.
     curve: u32,
     // 1 where the framebuffer does not code sRGB by itself.
     encode: u32,
     // What lies around the picture, linear.
     surround: vec4f,
+    // Logarithm of the number at the ramp's start, and one over that of the ratio of its ends.
+    scale: vec4f,
+    // The ramp, linear.
+    ramp: array<vec4f, 17>,
 };
 
 @group(0) @binding(0) var<uniform> view: View;
@@ -57,6 +62,20 @@ fn tone(color: vec3f) -> vec3f {
     return x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14);
 }
 
+// The color of a number on the ramp; black for none at all.
+fn ramp(value: f32) -> vec3f {
+    if value <= 0.0 {
+        return vec3f(0.0);
+    }
+    var place = 1.0;
+    if view.scale.y > 0.0 {
+        place = clamp((log(value) - view.scale.x) * view.scale.y, 0.0, 1.0);
+    }
+    let at = place * 16.0;
+    let low = min(u32(at), 15u);
+    return mix(view.ramp[low].rgb, view.ramp[low + 1u].rgb, at - f32(low));
+}
+
 fn srgb(linear: vec3f) -> vec3f {
     let low = linear * 12.92;
     let high = 1.055 * pow(max(linear, vec3f(0.0031308)), vec3f(1.0 / 2.4)) - 0.055;
@@ -68,7 +87,11 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let at = view.origin + position.xy * view.step;
     var color = view.surround.rgb;
     if all(at >= vec2f(0.0)) && all(at < vec2f(view.size)) {
-        color = tone(footprint(at) * view.exposure);
+        if view.curve == 2u {
+            color = ramp(footprint(at).r);
+        } else {
+            color = tone(footprint(at) * view.exposure);
+        }
     }
     color = clamp(color, vec3f(0.0), vec3f(1.0));
     if view.encode == 1u {

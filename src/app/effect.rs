@@ -1,7 +1,10 @@
 //! Which toggles change nothing in the scene at hand, and why.
 
 use crate::scene::Settings;
-use crate::scene::settings::{Albedo, EmissionMode, VolumeSettings};
+use crate::scene::settings::{
+    Albedo, EmissionMode, MaterialKind, MaterialSettings, SurfaceSettings, VolumeSettings,
+};
+use crate::transport::strategy::NeeEvaluation;
 
 /// A toggle of the strategy panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,6 +15,8 @@ pub enum Toggle {
     EmissionRatioTracking,
     /// `majorant_boost`.
     MajorantBoost,
+    /// `nee`.
+    FireAsLight,
 }
 
 /// Why `toggle` makes no difference to noise or cost in this scene; `None` where it does.
@@ -29,12 +34,50 @@ pub fn no_effect(toggle: Toggle, settings: &Settings) -> Option<&'static str> {
         Toggle::MajorantBoost if strategy.advanced.boost_amount <= 0.0 => {
             Some("the boost amount is 0.")
         }
-        Toggle::MajorantBoost
-            if !strategy.emission_decoupling && !strategy.emission_ratio_tracking =>
-        {
-            Some("it needs decoupling or ratio tracking, which read the glow at every step.")
-        }
+        Toggle::MajorantBoost if !reads_the_glow_in_steps(settings) => Some(
+            "it needs decoupling, ratio tracking or fire as a light (line), which read the glow at \
+             every step.",
+        ),
         Toggle::MajorantBoost => None,
+        Toggle::FireAsLight if !turns_light(settings) => {
+            Some("nothing here scatters or reflects light, so fire is only seen directly.")
+        }
+        Toggle::FireAsLight => None,
+    }
+}
+
+/// Whether some walk reads the glow at every step, which is what the boost adds steps to.
+fn reads_the_glow_in_steps(settings: &Settings) -> bool {
+    let strategy = &settings.strategy;
+    strategy.emission_decoupling
+        || strategy.emission_ratio_tracking
+        || (strategy.nee
+            && strategy.advanced.nee_evaluation == NeeEvaluation::Line
+            && turns_light(settings))
+}
+
+/// Whether light can change its direction: only there does a path look for lights.
+fn turns_light(settings: &Settings) -> bool {
+    settings.volume.iter().any(scatters) || settings.surface.iter().any(reflects)
+}
+
+fn scatters(volume: &VolumeSettings) -> bool {
+    let albedo_is_black = match &volume.albedo {
+        Albedo::Gray(value) => *value <= 0.0,
+        Albedo::Rgb(rgb) => rgb.iter().all(|&value| value <= 0.0),
+        Albedo::Grid(_) => false,
+    };
+    !albedo_is_black && !volume.density.scale.is_black()
+}
+
+fn reflects(surface: &SurfaceSettings) -> bool {
+    match &surface.material {
+        Some(material) => {
+            material.kind != MaterialKind::Black && !material.reflectance().is_black()
+        }
+        None => {
+            surface.emission.is_black() && !MaterialSettings::default().reflectance().is_black()
+        }
     }
 }
 
@@ -79,9 +122,12 @@ mod tests {
     #[test]
     fn smoke_alone_makes_every_emission_toggle_idle() {
         let settings = scene(EmissionMode::None, Preset::Full);
-        for toggle in
-            [Toggle::EmissionDecoupling, Toggle::EmissionRatioTracking, Toggle::MajorantBoost]
-        {
+        for toggle in [
+            Toggle::EmissionDecoupling,
+            Toggle::EmissionRatioTracking,
+            Toggle::MajorantBoost,
+            Toggle::FireAsLight,
+        ] {
             assert!(no_effect(toggle, &settings).unwrap().contains("emits"));
         }
     }
@@ -96,6 +142,48 @@ mod tests {
         assert_eq!(no_effect(Toggle::MajorantBoost, &settings), None);
         settings.strategy.advanced.boost_amount = 0.0;
         assert!(no_effect(Toggle::MajorantBoost, &settings).is_some());
+    }
+
+    #[test]
+    fn fire_as_a_light_needs_something_to_light() {
+        let mut settings = scene(EmissionMode::Constant, Preset::Full);
+        settings.volume[0].albedo = Albedo::Gray(0.0);
+        let idle = |settings: &Settings| no_effect(Toggle::FireAsLight, settings);
+        assert!(idle(&settings).unwrap().contains("seen directly"));
+        let mut lit = settings.clone();
+        lit.volume[0].albedo = Albedo::Gray(0.3);
+        assert_eq!(idle(&lit), None);
+        lit.volume[0].density.scale = Color::Gray(0.0);
+        assert!(idle(&lit).is_some(), "an albedo without density scatters nothing");
+
+        let mut floor = SurfaceSettings::default();
+        settings.surface = vec![floor.clone()];
+        assert_eq!(idle(&settings), None, "a surface without material is diffuse");
+        floor.emission = Color::Gray(1.0);
+        settings.surface = vec![floor.clone()];
+        assert!(idle(&settings).is_some(), "a lamp without material is black");
+        let black = MaterialSettings { kind: MaterialKind::Black, ..Default::default() };
+        floor.material = Some(black);
+        settings.surface = vec![floor.clone()];
+        assert!(idle(&settings).is_some());
+        floor.material = Some(MaterialSettings::default());
+        settings.surface = vec![floor];
+        assert_eq!(idle(&settings), None);
+    }
+
+    #[test]
+    fn looking_at_the_fire_along_a_line_is_a_walk_to_boost() {
+        let mut settings = scene(EmissionMode::Constant, Preset::Baseline);
+        settings.volume[0].albedo = Albedo::Gray(0.3);
+        let idle = |settings: &Settings| no_effect(Toggle::MajorantBoost, settings).is_some();
+        assert!(idle(&settings));
+        settings.strategy.nee = true;
+        assert!(!idle(&settings));
+        settings.strategy.advanced.nee_evaluation = NeeEvaluation::Point;
+        assert!(idle(&settings));
+        settings.strategy.advanced.nee_evaluation = NeeEvaluation::Line;
+        settings.volume[0].albedo = Albedo::Gray(0.0);
+        assert!(idle(&settings), "nothing here looks at the fire");
     }
 
     #[test]

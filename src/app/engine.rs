@@ -55,6 +55,7 @@ pub struct Engine {
     /// The latest generation whose failure was told.
     failed: u64,
     paused: bool,
+    shows_steps: bool,
     picture: Option<Arc<Picture>>,
 }
 
@@ -95,6 +96,7 @@ impl Engine {
             generation: 0,
             failed: 0,
             paused: false,
+            shows_steps: false,
             picture: None,
         })
     }
@@ -167,6 +169,14 @@ impl Engine {
     pub fn set_paused(&mut self, paused: bool) {
         self.paused = paused;
         self.session.set_paused(paused);
+    }
+
+    /// Whether pictures bring the tracking steps of each pixel along.
+    pub fn set_shows_steps(&mut self, shows: bool) {
+        if self.shows_steps != shows {
+            self.shows_steps = shows;
+            self.session.set_shows_steps(shows);
+        }
     }
 
     /// Throws the samples away and starts again.

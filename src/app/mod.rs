@@ -4,11 +4,13 @@
 //! - `state`, `history`: what is edited, and undo; `commands`: everything that can be asked for.
 //! - `engine`, `loader`: from edits to pictures, without ever blocking the window.
 //! - `viewport`, `navigation`, `zoom`, `display`: the picture and the hand on it.
+//! - `diagnostics`: cells over the picture and maps in its place, to understand a render.
 //! - `panels`, `widgets`, `notices`, `theme`: what is around it.
 //! - `files`, `saver`: choosing and writing files.
 //! - `frame_stats`: what the window costs (`FLAMBEAU_FRAME_STATS=FILE`).
 
 mod commands;
+mod diagnostics;
 mod display;
 mod effect;
 mod engine;
@@ -29,6 +31,7 @@ mod window;
 mod zoom;
 
 pub use commands::Command;
+pub use diagnostics::{Scale, ramp_color};
 pub use engine::Engine;
 pub use files::Dialogs;
 pub use notices::{Level, Notice, Notices};

@@ -6,7 +6,8 @@ use std::time::{Duration, Instant};
 use egui::{CursorIcon, PointerButton, Rect, Response, Sense, Stroke, Ui};
 use glam::{UVec2, Vec2, Vec3};
 
-use super::display;
+use super::diagnostics::Scale;
+use super::display::{self, Look};
 use super::navigation::Pose;
 use super::state::Editor;
 use super::theme::color;
@@ -30,6 +31,21 @@ pub struct Probe {
     pub pixel: UVec2,
     /// Linear red, green, blue and alpha, before exposure.
     pub value: [f32; 4],
+    /// Mean tracking steps of a sample, where they are shown.
+    pub steps: Option<f32>,
+}
+
+/// Where the picture lies in the window.
+#[derive(Clone, Copy, Debug)]
+pub struct View {
+    /// The viewport, in points.
+    pub rect: Rect,
+    /// How the picture lies in it, in framebuffer pixels.
+    pub placement: Placement,
+    /// Framebuffer pixels per point.
+    pub factor: f32,
+    /// Width and height of the picture.
+    pub size: UVec2,
 }
 
 /// The state of the viewport between frames.
@@ -86,8 +102,15 @@ impl Viewport {
         self.zoom.place(picture, self.size).scale
     }
 
-    /// Shows the picture in the rest of `ui` and lets the hand move camera and zoom.
-    pub fn show(&mut self, ui: &mut Ui, editor: &mut Editor, picture: Option<&Arc<Picture>>) {
+    /// Shows the picture, or its steps on a scale, in the rest of `ui` and lets the hand move camera
+    /// and zoom. Gives where it lies.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        editor: &mut Editor,
+        picture: Option<&Arc<Picture>>,
+        steps: Option<Scale>,
+    ) -> Option<View> {
         let rect = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(rect, Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Picture"));
@@ -98,18 +121,22 @@ impl Viewport {
         self.probe = None;
         let Some(picture) = picture else {
             ui.painter().rect_filled(rect, 0.0, color::SURROUND);
-            return;
+            return None;
         };
         let placement = self.zoom.place(picture.size, self.size);
         let corner = from_egui(rect.min.to_vec2()) * factor;
-        let tone = editor.document.tone;
-        display::paint(ui.painter(), rect, corner, picture.clone(), placement, tone);
+        let look = match steps {
+            Some(scale) => Look::Steps(scale),
+            None => Look::Picture(editor.document.tone),
+        };
+        display::paint(ui.painter(), rect, corner, picture.clone(), placement, look);
         self.probe = self.pointer.and_then(|at| probe(picture, placement, at));
         if let Some(probe) = self.probe
             && placement.scale >= OUTLINE_FROM
         {
             outline(ui, rect, placement, probe.pixel, factor);
         }
+        Some(View { rect, placement, factor, size: picture.size })
     }
 
     fn navigate(
@@ -195,7 +222,8 @@ pub fn set_pose(camera: &mut CameraSettings, moved: Pose) {
 fn probe(picture: &Picture, placement: Placement, at: Vec2) -> Option<Probe> {
     let pixel = placement.pixel_at(at, picture.size)?;
     let index = pixel.y as usize * picture.size.x as usize + pixel.x as usize;
-    Some(Probe { pixel, value: *picture.pixels.get(index)? })
+    let steps = picture.steps.mean.get(index).copied();
+    Some(Probe { pixel, value: *picture.pixels.get(index)?, steps })
 }
 
 /// Draws a frame around a pixel.
@@ -213,6 +241,7 @@ fn outline(ui: &Ui, rect: Rect, placement: Placement, pixel: UVec2, factor: f32)
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::render::StepMap;
 
     #[test]
     fn the_film_waits_for_a_size_that_lasts() {
@@ -234,12 +263,15 @@ mod tests {
             generation: 1,
             size: UVec2::new(2, 2),
             pixels: vec![[0.0; 4], [1.0; 4], [2.0; 4], [3.0; 4]],
+            steps: StepMap { mean: vec![0.0, 1.0, 4.0, 9.0], range: Some([1.0, 9.0]) },
             complete: true,
             stats: Default::default(),
         };
         let placement = Placement { scale: 4.0, corner: Vec2::new(10.0, 10.0) };
         let read = |x, y| probe(&picture, placement, Vec2::new(x, y)).map(|p| p.value[0]);
         assert_eq!(read(15.0, 11.0), Some(1.0));
+        let steps = probe(&picture, placement, Vec2::new(11.0, 17.9)).and_then(|p| p.steps);
+        assert_eq!(steps, Some(4.0));
         assert_eq!(read(11.0, 17.9), Some(2.0));
         assert_eq!(read(18.1, 11.0), None);
     }

@@ -11,6 +11,9 @@ use super::theme::{color, space};
 use crate::scene::keys;
 use crate::scene::settings::Color;
 
+/// Choices that fit beside a label.
+const MOST_IN_A_ROW: usize = 3;
+
 /// The help of a key of the scene file, ready for a tooltip.
 pub fn key_help(path: &str) -> String {
     let Some(key) = keys::find(path) else { return path.to_owned() };
@@ -191,6 +194,41 @@ pub fn segments(ui: &mut Ui, choices: &[(&str, &str)], chosen: Option<usize>) ->
         }
     });
     clicked
+}
+
+/// One of the names that a key of the scene file chooses among; whether it changed. More names
+/// than a row has room for stand below the label.
+pub fn choice<T>(ui: &mut Ui, name: &str, key: &str, value: &mut T) -> bool
+where
+    T: serde::Serialize + serde::de::DeserializeOwned,
+{
+    let explained = keys::explained_choices(key);
+    let present = serde_json::to_value(&*value).ok();
+    let chosen = explained.iter().position(|(name, _)| present == Some((*name).into()));
+    let names: Vec<String> = explained.iter().map(|(name, _)| capitalized(name)).collect();
+    let choices: Vec<(&str, &str)> = std::iter::zip(&names, &explained)
+        .map(|(name, (_, help))| (name.as_str(), *help))
+        .collect();
+    let help = key_help(key);
+    let clicked = if choices.len() > MOST_IN_A_ROW {
+        row_label(ui, name, &help);
+        ui.name_inputs(name, |ui| segments(ui, &choices, chosen))
+    } else {
+        row(ui, name, &help, |ui| segments(ui, &choices, chosen)).inner
+    };
+    let parsed = clicked
+        .and_then(|index| explained.get(index))
+        .and_then(|(name, _)| serde_json::from_value((*name).into()).ok());
+    parsed.is_some_and(|parsed| {
+        *value = parsed;
+        true
+    })
+}
+
+/// A name of the scene file as a button says it.
+pub fn capitalized(name: &str) -> String {
+    let mut letters = name.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// The one number that a slider shows for a color: its largest channel.

@@ -11,6 +11,7 @@ use egui::{Context, Ui};
 use glam::UVec2;
 
 use super::commands::Command;
+use super::diagnostics::Diagnostics;
 use super::display;
 use super::engine::{Engine, News};
 use super::files::{Answer, Dialog, Dialogs, Purpose};
@@ -42,6 +43,7 @@ pub struct App {
     editor: Editor,
     engine: Engine,
     viewport: Viewport,
+    diagnostics: Diagnostics,
     notices: Notices,
     saver: Saver,
     dialogs: Dialogs,
@@ -77,6 +79,7 @@ impl App {
             editor: Editor::default(),
             engine,
             viewport: Viewport::default(),
+            diagnostics: Diagnostics::default(),
             notices: Notices::default(),
             saver: Saver::default(),
             dialogs: options.dialogs,
@@ -196,6 +199,7 @@ impl App {
     }
 
     fn bring_up_to_date(&mut self, ctx: &Context) {
+        self.diagnostics.update(ctx, &mut self.engine);
         let Some(size) = self.film_size() else { return };
         let mut news = Vec::new();
         if let Some(wait) = self.engine.update(&self.editor.document, size, &mut news) {

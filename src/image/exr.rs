@@ -194,8 +194,9 @@ impl<'a> State<'a> {
         for name in &wanted {
             let Some(channel) = channels.iter().find(|channel| channel.name.eq(name.as_str()))
             else {
-                let reason = "this channel is missing; another program may have dropped it, and \
-                              without it the render cannot be continued";
+                let reason = "this channel is missing, and without it the render cannot be \
+                              continued; another program may have dropped it, or an earlier \
+                              version of Flambeau, which did not keep it, wrote the file";
                 return Err(invalid(path, name, reason));
             };
             if channel.sample_type != SampleType::F32 || channel.sampling != Vec2(1, 1) {
@@ -352,6 +353,27 @@ mod tests {
         std::fs::write(&path, b"no picture").unwrap();
         assert!(read_info(&path).unwrap_err().to_string().contains("EXR"));
         assert!(read_info(&folder.path().join("absent.exr")).is_err());
+    }
+
+    #[test]
+    fn steps_are_a_mean_and_a_file_without_their_sums_says_what_is_missing() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("out.exr");
+        let mut film = Film::new(UVec2::ONE).unwrap();
+        for steps in [1, 2, 6] {
+            let sample = PathSample { tracking_steps: steps, ..Default::default() };
+            film.add(UVec2::ZERO, &sample);
+        }
+        write(&path, &film, &header()).unwrap();
+        let mut image = exr::prelude::read_first_flat_layer_from_file(&path).unwrap();
+        let channels = &mut image.layer_data.channel_data.list;
+        let steps = channels.iter().find(|channel| channel.name.eq("steps")).unwrap();
+        assert_eq!(steps.sample_data.values_as_f32().collect::<Vec<_>>(), [3.0]);
+
+        channels.retain(|channel| !channel.name.to_string().starts_with("state.steps"));
+        image.write().to_file(&path).unwrap();
+        let error = read_snapshot(&path).unwrap_err().to_string();
+        assert!(error.contains("state.steps.Y") && error.contains("earlier version"), "{error}");
     }
 
     /// Scripts look for these names; a text named `version` would be lost or refused by readers.

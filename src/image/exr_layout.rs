@@ -14,7 +14,7 @@ const STATE_WORDS: usize = size_of::<Sums>() / size_of::<f32>();
 pub const NO_DEPTH: f32 = 1.0e10;
 
 /// Channels for looking at, in the order of [`view_values`].
-const VIEW: [&str; 21] = [
+const VIEW: [&str; 22] = [
     "R",
     "G",
     "B",
@@ -36,6 +36,7 @@ const VIEW: [&str; 21] = [
     "variance.B",
     "samples",
     "depth.Z",
+    "steps",
 ];
 
 /// The channel of a pixel's own sample count.
@@ -66,6 +67,7 @@ pub fn state_names() -> Vec<String> {
     }
     pair("alpha", "A");
     pair("depth", "Z");
+    pair("steps", "Y");
     names.push("state.depth_count.Z".to_owned());
     names
 }
@@ -104,6 +106,7 @@ fn view_values(film: &Film, pixel: UVec2) -> [f32; VIEW.len()] {
     values[3] = estimate.alpha() as f32;
     values[19] = film.samples(pixel) as f32;
     values[20] = estimate.depth().map_or(NO_DEPTH, |depth| depth as f32);
+    values[21] = estimate.steps() as f32;
     values
 }
 
@@ -148,11 +151,13 @@ mod tests {
         sums.indirect[1].rest = 4.0;
         sums.alpha.sum = 5.0;
         sums.depth.rest = 6.0;
+        sums.steps.sum = 7.0;
         let words: &[f32] = bytemuck::cast_slice(std::slice::from_ref(&sums));
         let at = |name: &str| words[names.iter().position(|n| n == name).unwrap()];
         assert_eq!((at("state.beauty5.B"), at("state.beauty5_rest.B")), (1.0, 2.0));
         assert_eq!((at("state.emission.R"), at("state.indirect_rest.G")), (3.0, 4.0));
         assert_eq!((at("state.alpha.A"), at("state.depth_rest.Z")), (5.0, 6.0));
+        assert_eq!(at("state.steps.Y"), 7.0);
         assert_eq!(names[STATE_WORDS - 1], "state.depth_count.Z");
     }
 

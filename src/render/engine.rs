@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use super::film::Film;
 use super::pool::{Failure, Pool};
-use super::publish::{RenderStats, render_stats, resolve};
+use super::publish::{RenderStats, StepMap, render_stats, resolve, resolve_steps};
 use super::schedule::{Limits, Next, Schedule};
 use crate::transport::PixelSampler;
 
@@ -73,11 +73,22 @@ impl Engine {
         self.schedule.publish_due(self.seconds)
     }
 
-    /// Reads the picture into `pixels` and returns its figures.
-    pub fn picture(&mut self, pool: &Pool, pixels: &mut Vec<[f32; 4]>) -> RenderStats {
+    /// Reads the picture into `pixels` and, where they are wanted, the steps of each pixel into
+    /// `steps`; returns its figures.
+    pub fn picture(
+        &mut self,
+        pool: &Pool,
+        pixels: &mut Vec<[f32; 4]>,
+        steps: Option<&mut StepMap>,
+    ) -> RenderStats {
         let start = Instant::now();
         let film = &self.film;
-        let noise = pool.install(|| resolve(film, pixels));
+        let noise = pool.install(|| {
+            if let Some(steps) = steps {
+                resolve_steps(film, steps);
+            }
+            resolve(film, pixels)
+        });
         let cost = start.elapsed().as_secs_f64();
         self.seconds += cost;
         self.schedule.published(self.seconds, cost);

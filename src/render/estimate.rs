@@ -46,6 +46,11 @@ impl<'a> PixelEstimate<'a> {
         (count > 0).then(|| self.sums.depth.value() / f64::from(count))
     }
 
+    /// Mean number of tentative collisions of a sample.
+    pub fn steps(&self) -> f64 {
+        self.sums.steps.value() / f64::from(self.samples)
+    }
+
     /// Variance of the mean of each channel; none below two filled accumulators.
     pub fn variance(&self) -> Option<[f64; 3]> {
         let channel = |c: usize| self.variance_of(|rgb| rgb[c]);

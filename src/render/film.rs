@@ -4,7 +4,7 @@
 //! A pixel's sums mean nothing until it has a sample, which makes starting over as cheap as
 //! clearing the counts.
 
-use bytemuck::{Pod, Zeroable};
+use bytemuck::{Pod, Zeroable, bytes_of};
 use glam::UVec2;
 
 use super::pair::{Pair, add_rgb};
@@ -45,15 +45,11 @@ pub struct Sums {
     pub alpha: Pair,
     /// Distances of the first events or surfaces.
     pub depth: Pair,
+    /// Tentative collisions of all walks, those of failed samples included.
+    pub steps: Pair,
     /// How many samples brought a distance.
     pub depth_count: u32,
 }
-
-/// Storage of [`Sums`]: short arrays of plain floats come zeroed from the system without being
-/// touched, page by page as pixels are first sampled.
-pub(crate) type Words = [[f32; 7]; 11];
-
-const _: () = assert!(size_of::<Words>() == size_of::<Sums>());
 
 /// Counts over a whole film.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -89,7 +85,7 @@ pub struct Film {
     size: UVec2,
     tiles: UVec2,
     counts: Vec<u32>,
-    words: Vec<Words>,
+    sums: Vec<Sums>,
     /// Counts over the whole film.
     pub totals: Totals,
 }
@@ -116,13 +112,10 @@ impl Film {
             return Err(too_large());
         }
         let pixels = tile_count as usize * TILE_PIXELS;
-        // A failing `vec!` would abort; asking first turns that into an error, and dropping the
-        // answer lets `vec!` take untouched zero pages.
-        let mut asked = Vec::<Words>::new();
-        asked.try_reserve_exact(pixels).map_err(|_| too_large())?;
-        drop(asked);
-        let words = vec![Words::default(); pixels];
-        Ok(Self { size, tiles, counts: vec![0; pixels], words, totals: Totals::default() })
+        // Zeroed by the system, page by page as pixels are first sampled; too little memory is an
+        // error and no abort.
+        let sums = bytemuck::allocation::try_zeroed_vec(pixels).map_err(|()| too_large())?;
+        Ok(Self { size, tiles, counts: vec![0; pixels], sums, totals: Totals::default() })
     }
 
     /// Width and height in pixels.
@@ -149,14 +142,13 @@ impl Film {
     /// The sums of `pixel`, once it has a sample.
     pub fn sums(&self, pixel: UVec2) -> Option<&Sums> {
         let index = self.index(pixel);
-        (self.counts[index] > 0).then(|| bytemuck::cast_ref(&self.words[index]))
+        (self.counts[index] > 0).then(|| &self.sums[index])
     }
 
     /// Adds the next sample of `pixel`; its number is the count before.
     pub fn add(&mut self, pixel: UVec2, sample: &PathSample) {
         let index = self.index(pixel);
-        let totals =
-            add_sample(&mut self.counts[index], bytemuck::cast_mut(&mut self.words[index]), sample);
+        let totals = add_sample(&mut self.counts[index], &mut self.sums[index], sample);
         self.totals = self.totals.plus(totals);
     }
 
@@ -164,7 +156,7 @@ impl Film {
     pub fn restore(&mut self, pixel: UVec2, samples: u32, sums: &Sums) {
         let index = self.index(pixel);
         self.counts[index] = samples;
-        *bytemuck::cast_mut(&mut self.words[index]) = *sums;
+        self.sums[index] = *sums;
     }
 
     /// Fewest and most samples of a pixel.
@@ -187,18 +179,15 @@ impl Film {
     pub fn try_clone(&self) -> Result<Self> {
         let mut copy = Self::new(self.size)?;
         copy.counts.copy_from_slice(&self.counts);
-        copy.words.copy_from_slice(&self.words);
+        copy.sums.copy_from_slice(&self.sums);
         copy.totals = self.totals;
         Ok(copy)
     }
 
     /// Counts and sums of a range of tiles, for threads to share out row by row.
-    pub(crate) fn tiles_mut(
-        &mut self,
-        tiles: std::ops::Range<usize>,
-    ) -> (&mut [u32], &mut [Words]) {
+    pub(crate) fn tiles_mut(&mut self, tiles: std::ops::Range<usize>) -> (&mut [u32], &mut [Sums]) {
         let range = tiles.start * TILE_PIXELS..tiles.end * TILE_PIXELS;
-        (&mut self.counts[range.clone()], &mut self.words[range])
+        (&mut self.counts[range.clone()], &mut self.sums[range])
     }
 
     /// Tiles across and down.
@@ -230,6 +219,7 @@ pub(crate) fn add_sample(count: &mut u32, sums: &mut Sums, sample: &PathSample) 
     }
     let accumulator = *count as usize % ACCUMULATORS;
     *count += 1;
+    sums.steps.add(sample.tracking_steps as f32);
     let usable = is_usable(sample);
     if usable {
         let beauty = sample.emission + sample.background + sample.direct + sample.indirect;
@@ -265,12 +255,11 @@ fn is_usable(sample: &PathSample) -> bool {
 impl PartialEq for Film {
     /// Whether both have the same samples, bit for bit.
     fn eq(&self, other: &Self) -> bool {
-        let bits = |words: &Words| words.map(|group| group.map(f32::to_bits));
         self.size == other.size
             && self.totals == other.totals
             && self.counts == other.counts
-            && std::iter::zip(&self.counts, std::iter::zip(&self.words, &other.words))
-                .all(|(&count, (a, b))| count == 0 || bits(a) == bits(b))
+            && std::iter::zip(&self.counts, std::iter::zip(&self.sums, &other.sums))
+                .all(|(&count, (a, b))| count == 0 || bytes_of(a) == bytes_of(b))
     }
 }
 
@@ -316,11 +305,12 @@ mod tests {
             film.add(UVec2::ZERO, &gray(bad));
         }
         film.add(UVec2::ZERO, &PathSample { depth: Some(f32::NAN), ..gray(1.0) });
-        film.add(UVec2::ZERO, &PathSample { alpha: f32::NAN, ..gray(1.0) });
+        film.add(UVec2::ZERO, &PathSample { alpha: f32::NAN, tracking_steps: 5, ..gray(1.0) });
         film.add(UVec2::ZERO, &PathSample { tracking_steps: 7, guard_hit: true, ..gray(3.0) });
         let sums = film.sums(UVec2::ZERO).unwrap();
         assert_eq!((sums.direct[0].value(), sums.depth_count), (3.0, 1));
-        let expected = Totals { paths: 7, tracking_steps: 7, non_finite: 6, guard_hits: 1 };
+        assert_eq!(sums.steps.value(), 12.0, "what a failed sample cost was spent all the same");
+        let expected = Totals { paths: 7, tracking_steps: 12, non_finite: 6, guard_hits: 1 };
         assert_eq!(film.totals, expected);
     }
 

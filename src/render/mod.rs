@@ -20,7 +20,7 @@ pub use estimate::FilmStats;
 pub use film::Film;
 pub use headless::{Headless, Job, render_headless};
 pub use pool::Failure;
-pub use publish::{Picture, RenderStats};
+pub use publish::{Picture, RenderStats, StepMap};
 pub use session::{Request, Session};
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use std::sync::{Mutex, PoisonError};
 use glam::UVec2;
 use rayon::prelude::*;
 
-use super::film::{Film, Sums, TILE, Totals, Words, add_sample, row_pixels};
+use super::film::{Film, Sums, TILE, Totals, add_sample, row_pixels};
 use super::schedule::{Work, representative};
 use crate::error::{Error, Result};
 use crate::transport::PixelSampler;
@@ -108,15 +108,15 @@ impl Pool {
         let failure = Mutex::new(None);
         let row = Row { sampler, work, size: film.size(), tiles: film.tiles(), stop };
         let first_row = work.tiles.start * TILE as usize;
-        let (counts, words) = film.tiles_mut(work.tiles.clone());
+        let (counts, sums) = film.tiles_mut(work.tiles.clone());
         let (totals, complete) = self.threads.install(|| {
             counts
                 .par_chunks_mut(TILE as usize)
-                .zip(words.par_chunks_mut(TILE as usize))
+                .zip(sums.par_chunks_mut(TILE as usize))
                 .enumerate()
                 .with_max_len(1)
-                .map(|(index, (counts, words))| {
-                    row.sample(first_row + index, counts, words, &failure)
+                .map(|(index, (counts, sums))| {
+                    row.sample(first_row + index, counts, sums, &failure)
                 })
                 .reduce(|| (Totals::default(), true), |a, b| (a.0.plus(b.0), a.1 && b.1))
         });
@@ -141,7 +141,7 @@ impl Row<'_> {
         &self,
         row: usize,
         counts: &mut [u32],
-        words: &mut [Words],
+        sums: &mut [Sums],
         failure: &Mutex<Option<Failure>>,
     ) -> (Totals, bool) {
         let at = Cell::new(None);
@@ -156,7 +156,7 @@ impl Row<'_> {
                     continue;
                 }
                 let count = &mut counts[x as usize];
-                let sums: &mut Sums = bytemuck::cast_mut(&mut words[x as usize]);
+                let sums = &mut sums[x as usize];
                 while *count < self.work.target {
                     if (self.stop)() {
                         return false;

@@ -16,10 +16,21 @@ pub struct Picture {
     pub size: UVec2,
     /// Linear RGBA before exposure, row 0 on top. A pixel without samples shows its block.
     pub pixels: Vec<[f32; 4]>,
+    /// What the samples of each pixel cost; empty unless asked for.
+    pub steps: StepMap,
     /// Whether every pixel has at least one sample of its own.
     pub complete: bool,
     /// Figures at the time it was made.
     pub stats: RenderStats,
+}
+
+/// Mean tentative collisions of a sample of each pixel.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StepMap {
+    /// The means, row 0 on top; a pixel without samples shows its block.
+    pub mean: Vec<f32>,
+    /// Smallest and largest mean other than zero, if there are any.
+    pub range: Option<[f32; 2]>,
 }
 
 /// How far a render is.
@@ -64,6 +75,26 @@ pub fn resolve(film: &Film, pixels: &mut Vec<[f32; 4]>) -> Option<f64> {
         .map(|(y, line)| resolve_line(film, y as u32, line))
         .collect();
     FilmStats::from_lines(film, &lines).noise
+}
+
+/// Reads the steps of every pixel into `steps`, which gets the size of the film. Runs on the threads
+/// of the calling pool.
+pub fn resolve_steps(film: &Film, steps: &mut StepMap) {
+    let size = film.size();
+    steps.mean.resize(size.x as usize * size.y as usize, 0.0);
+    let lines = steps.mean.par_chunks_mut(size.x as usize).enumerate().map(|(y, line)| {
+        let mut range = [f32::INFINITY, 0.0_f32];
+        for (x, out) in line.iter_mut().enumerate() {
+            let shown = shown_pixel(film, UVec2::new(x as u32, y as u32));
+            *out = PixelEstimate::of(film, shown).map_or(0.0, |pixel| pixel.steps() as f32);
+            if *out > 0.0 {
+                range = [range[0].min(*out), range[1].max(*out)];
+            }
+        }
+        range
+    });
+    let range = lines.reduce(|| [f32::INFINITY, 0.0], |a, b| [a[0].min(b[0]), a[1].max(b[1])]);
+    steps.range = (range[1] > 0.0).then_some(range);
 }
 
 fn resolve_line(film: &Film, y: u32, line: &mut [[f32; 4]]) -> LineStats {
@@ -139,6 +170,22 @@ mod tests {
         assert_eq!(red_at(17, 0), 20.0);
         assert_eq!(pixels[0], [4.0, 0.0, 0.0, 0.25]);
         assert_eq!(pixels[16 * 21], [0.0; 4]);
+    }
+
+    #[test]
+    fn steps_are_means_and_blocks_as_in_the_picture() {
+        let mut film = Film::new(UVec2::new(4, 2)).unwrap();
+        let steps = |steps| PathSample { tracking_steps: steps, ..Default::default() };
+        film.add(UVec2::new(3, 1), &steps(5));
+        film.add(UVec2::new(1, 1), &steps(2));
+        film.add(UVec2::new(1, 1), &steps(1));
+        let mut read = StepMap { mean: vec![9.0; 50], range: None };
+        resolve_steps(&film, &mut read);
+        assert_eq!(read.mean, [1.5, 1.5, 5.0, 5.0, 1.5, 1.5, 5.0, 5.0]);
+        assert_eq!(read.range, Some([1.5, 5.0]));
+        film.clear();
+        resolve_steps(&film, &mut read);
+        assert_eq!(read, StepMap { mean: vec![0.0; 8], range: None });
     }
 
     #[test]

@@ -13,7 +13,7 @@ use super::engine::{Engine, Step};
 use super::film::Film;
 use super::headless::same_size;
 use super::pool::{Failure, Pool, Priority};
-use super::publish::Picture;
+use super::publish::{Picture, StepMap};
 use super::schedule::Limits;
 use crate::error::{Error, Result};
 use crate::transport::PixelSampler;
@@ -48,6 +48,7 @@ struct Mail {
     request: Option<Request>,
     snapshots: Vec<Sender<Film>>,
     paused: bool,
+    shows_steps: bool,
 }
 
 struct Shared {
@@ -86,6 +87,8 @@ impl Session {
             pool,
             epoch: 0,
             paused: false,
+            shows_steps: false,
+            owes_steps: false,
             job: None,
             seconds_per_path: None,
             snapshots: Vec::new(),
@@ -109,6 +112,13 @@ impl Session {
     /// picture.
     pub fn set_paused(&self, paused: bool) {
         self.shared.post(|mail| mail.paused = paused);
+    }
+
+    /// Whether pictures bring the steps of each pixel along. They cost a little to read, so they are
+    /// left out unless asked for; asking brings a new picture of what there is, also while paused
+    /// or finished.
+    pub fn set_shows_steps(&self, shows: bool) {
+        self.shared.post(|mail| mail.shows_steps = shows);
     }
 
     /// The latest picture. After [`Self::start`] the old one stays until the new request has its
@@ -165,6 +175,9 @@ struct Worker {
     /// The epoch of the last letter read.
     epoch: u64,
     paused: bool,
+    shows_steps: bool,
+    /// Whether steps were asked for since the last picture.
+    owes_steps: bool,
     job: Option<Active>,
     seconds_per_path: Option<f64>,
     snapshots: Vec<Sender<Film>>,
@@ -193,6 +206,7 @@ impl Worker {
         let mut idle = true;
         while self.read_mail(idle) {
             self.serve_snapshots();
+            self.serve_steps();
             idle = self.work();
         }
     }
@@ -211,6 +225,8 @@ impl Worker {
         }
         self.snapshots.append(&mut mail.snapshots);
         self.paused = mail.paused;
+        self.owes_steps |= mail.shows_steps && !self.shows_steps;
+        self.shows_steps = mail.shows_steps;
         if self.job.as_ref().is_some_and(Active::is_owed_a_picture) && mail.request.is_some() {
             // The epoch stays the old one: the letter is still unread.
             return true;
@@ -272,6 +288,15 @@ impl Worker {
         }
     }
 
+    /// Publishes what there is once more when steps were asked for; a request without a picture
+    /// brings them with its first.
+    fn serve_steps(&mut self) {
+        let owed = std::mem::take(&mut self.owes_steps);
+        if owed && self.job.as_ref().is_some_and(|job| job.engine.has_picture()) {
+            self.publish();
+        }
+    }
+
     /// One step of the render; returns whether there is nothing to do until the next letter.
     fn work(&mut self) -> bool {
         let Some(job) = &mut self.job else { return true };
@@ -310,13 +335,18 @@ impl Worker {
 
     /// Makes a picture of the film and hands it over.
     fn publish(&mut self) {
-        let mut pixels = self.spare_pixels();
+        let (mut pixels, mut steps) = self.spare_memory();
         let Some(job) = &mut self.job else { return };
-        let stats = job.engine.picture(&self.pool, &mut pixels);
+        if !self.shows_steps {
+            steps = StepMap::default();
+        }
+        let wanted = self.shows_steps.then_some(&mut steps);
+        let stats = job.engine.picture(&self.pool, &mut pixels, wanted);
         let picture = Arc::new(Picture {
             generation: job.generation,
             size: job.engine.film().size(),
             pixels,
+            steps,
             complete: job.engine.is_complete(),
             stats,
         });
@@ -326,14 +356,14 @@ impl Worker {
     }
 
     /// Memory for a picture: that of an old one if nobody holds it any more.
-    fn spare_pixels(&mut self) -> Vec<[f32; 4]> {
+    fn spare_memory(&mut self) -> (Vec<[f32; 4]>, StepMap) {
         let free = self.spare.iter().position(|picture| Arc::strong_count(picture) == 1);
         let free = free.map(|index| self.spare.swap_remove(index));
         // Two are kept: the latest and the one the window may still be reading.
         let excess = self.spare.len().saturating_sub(2);
         self.spare.drain(..excess);
         free.and_then(|picture| Arc::try_unwrap(picture).ok())
-            .map_or_else(Vec::new, |picture| picture.pixels)
+            .map_or_else(Default::default, |picture| (picture.pixels, picture.steps))
     }
 }
 

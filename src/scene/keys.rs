@@ -48,18 +48,25 @@ pub fn find(path: &str) -> Option<Key> {
 
 /// The names that the key at `path` chooses among; empty if it is no such choice.
 pub fn choices(path: &str) -> Vec<&'static str> {
+    at(path).map(schema::choices).unwrap_or_default()
+}
+
+/// The same names, each with what it means.
+pub fn explained_choices(path: &str) -> Vec<(&'static str, &'static str)> {
+    at(path).map(schema::explained_choices).unwrap_or_default()
+}
+
+/// The schema of the key at `path`.
+fn at(path: &str) -> Option<&'static Value> {
     let mut schema = schema::root();
     for part in general(path).split('.') {
         let next = match part {
             "N" => schema::list_item(schema),
             key => schema::table(schema).and_then(schema::properties).and_then(|p| p.get(key)),
         };
-        match next {
-            Some(next) => schema = next,
-            None => return Vec::new(),
-        }
+        schema = next?;
     }
-    schema::choices(schema)
+    Some(schema)
 }
 
 /// The path with `N` for every index.
@@ -173,7 +180,12 @@ mod tests {
         );
         assert_eq!(choices("strategy.preset"), ["baseline", "emission", "full"]);
         assert_eq!(choices("volume.0.shape"), ["box", "sphere", "everywhere", "ramp", "noise"]);
+        let explained = explained_choices("strategy.advanced.boost_mode");
+        let names: Vec<&str> = explained.iter().map(|(name, _)| *name).collect();
+        assert_eq!(names, ["stratified", "optimal", "clamped", "literal"]);
+        assert!(explained.iter().all(|(_, help)| help.len() > 20), "{explained:?}");
         assert!(find("strategy.preset").is_some());
-        assert!(find("strategy.nee").is_none());
+        assert!(find("strategy.nee").is_some());
+        assert!(find("strategy.neee").is_none());
     }
 }

@@ -72,6 +72,14 @@ pub(super) fn choices(schema: &Value) -> Vec<&str> {
         .collect()
 }
 
+/// The names a value may take, each with what it means, if the names are described one by one.
+pub(super) fn explained_choices(schema: &Value) -> Vec<(&str, &str)> {
+    alternatives(schema)
+        .into_iter()
+        .filter_map(|one| Some((one.get("const")?.as_str()?, one.get("description")?.as_str()?)))
+        .collect()
+}
+
 /// What may be written for a key, in words.
 pub(super) fn label(schema: &Value) -> String {
     if let Some(label) = schema.get("label").and_then(Value::as_str) {

@@ -34,6 +34,26 @@ impl Camera {
         let across = self.tan_half_fov_x * (ndc_x * self.right + ndc_y * self.up);
         Ray::new(self.position, (self.forward + across).normalize())
     }
+
+    /// A point of the world as the camera sees it: to the right, up and forward of it.
+    pub fn view_from_world(&self, point: Vec3A) -> Vec3A {
+        let offset = point - self.position;
+        Vec3A::new(offset.dot(self.right), offset.dot(self.up), offset.dot(self.forward))
+    }
+
+    /// The place on a film of `size` pixels, row 0 on top, of a point in front of the camera given
+    /// in its view; the way back from [`Camera::ray`].
+    pub fn film_from_view(&self, size: UVec2, view: Vec3A) -> Vec2 {
+        let size = size.as_vec2();
+        let scale = self.pixels_per_length(size.x, view.z);
+        0.5 * size + scale * Vec2::new(view.x, -view.y)
+    }
+
+    /// Pixels that a unit of length spans across the view, `depth` in front of the camera on a film
+    /// of `width` pixels.
+    pub fn pixels_per_length(&self, width: f32, depth: f32) -> f32 {
+        0.5 * width / (self.tan_half_fov_x * depth)
+    }
 }
 
 #[cfg(test)]
@@ -48,5 +68,24 @@ mod tests {
         assert!((left - Vec3A::new(-1.0, 1.0, 0.0).normalize()).length() < 1e-6, "{left}");
         let top = camera.ray(size, UVec2::new(100, 0), Vec2::ZERO).direction;
         assert!((top - Vec3A::new(0.0, 1.0, 0.5).normalize()).length() < 1e-6, "{top}");
+    }
+
+    #[test]
+    fn a_point_on_a_ray_is_seen_where_the_ray_left_the_film() {
+        let (position, target) = (Vec3A::new(1.0, -5.0, 2.0), Vec3A::new(0.0, 0.5, 0.3));
+        let camera = Camera::look_at(position, target, Vec3A::Z, 50.0).unwrap();
+        let size = UVec2::new(160, 90);
+        for pixel in [UVec2::ZERO, UVec2::new(80, 45), UVec2::new(159, 3)] {
+            let ray = camera.ray(size, pixel, Vec2::new(0.25, 0.5));
+            let view = camera.view_from_world(ray.at(3.0));
+            let seen = camera.film_from_view(size, view);
+            let left = pixel.as_vec2() + Vec2::new(0.25, 0.5);
+            assert!((seen - left).length() < 1e-3, "{seen} for {left}");
+        }
+        let depth = camera.view_from_world(target).z;
+        assert!(
+            (camera.pixels_per_length(2.0, depth) * depth - 1.0 / 25_f32.to_radians().tan()).abs()
+                < 1e-4
+        );
     }
 }

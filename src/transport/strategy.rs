@@ -35,13 +35,14 @@ pub struct Advanced {
     /// How the majorant boost places its steps. `stratified` spreads them evenly along the ray and
     /// measures the smoke in front of them apart; `optimal` takes them where they lower the noise
     /// most; `clamped` takes more where the fire is bright, never much shorter than a voxel;
-    /// `literal` is the same without that limit, as the talk states it.
+    /// `literal` is the same without that limit, as the talk states it. The first two are walks of
+    /// their own; decoupling without ratio tracking takes `clamped` in their place.
     pub boost_mode: BoostMode,
     /// Extra steps that the majorant boost takes along the brightest line through the volume.
     /// More steps, less noise; 0 boosts nothing.
     #[schemars(range(min = 0.0, max = 1000.0))]
     pub boost_amount: f32,
-    /// With `boost_mode = "clamped"`: the shortest boosted step, counted in voxels.
+    /// With `boost_mode = "clamped"` or where that stands in: the shortest boosted step, counted in voxels.
     #[schemars(range(min = 0.01, max = 1000.0), extend("unit" = "voxels"))]
     pub boost_clamp_voxels: f32,
     /// What a look at the fire brings back. `line` gathers its glow all along the line of sight;
@@ -59,14 +60,14 @@ pub struct Advanced {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum BoostMode {
-    /// Evenly spread steps, with the transmittance estimated apart.
+    /// Spreads the steps evenly along the fire and measures the smoke in front of them apart.
     #[default]
     Stratified,
-    /// Steps where they lower the variance most for their cost.
+    /// Takes the steps where they lower the noise most for what they cost.
     Optimal,
-    /// The boosted majorant never asks for steps shorter than `boost_clamp_voxels`.
+    /// Takes more steps where the fire is bright, but never much shorter ones than a voxel.
     Clamped,
-    /// The talk's maximum of the two majorants, without the clamp.
+    /// Takes as many as the brightness asks for, as the talk states it, without that limit.
     Literal,
 }
 
@@ -74,10 +75,10 @@ pub enum BoostMode {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum NeeEvaluation {
-    /// Its emission along the whole line of sight.
+    /// Gathers its glow all along the line of sight. Less noise for each look.
     #[default]
     Line,
-    /// Its emission at the sampled point.
+    /// Takes its glow at one point. Cheaper, and noisier in and near the fire.
     Point,
 }
 
@@ -85,10 +86,10 @@ pub enum NeeEvaluation {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum LightSelection {
-    /// By power, distance and facing, through a hierarchy.
+    /// Prefers lights that are bright, near and in front. Best with many lights.
     #[default]
     Hierarchy,
-    /// Each with the same probability.
+    /// Gives each light the same chance, however weak or far.
     Uniform,
 }
 

@@ -146,6 +146,21 @@ impl Energy {
         finite(self.cone_along(local))
     }
 
+    /// Calls `visit` with the box and the power of every cell that emits; the powers sum to
+    /// [`Energy::power`]. A uniform volume is one cell.
+    pub fn for_each_cell(&self, mut visit: impl FnMut(&Aabb, f32)) {
+        match &self.support {
+            Support::Region(..) => visit(&self.bounds, self.power()),
+            Support::Cells(cells) => {
+                for &index in &cells.emitting {
+                    let bounds = cells.grid.clipped(cells.grid.cell(index as usize));
+                    let density = cells.largest * f64::from(cells.relative[index as usize]);
+                    visit(&bounds, finite(self.total * density * volume_of(&bounds)));
+                }
+            }
+        }
+    }
+
     pub(super) fn total(&self) -> f64 {
         self.total
     }

@@ -68,6 +68,16 @@ impl Instance {
         &self.volume
     }
 
+    /// From the volume's space to the world.
+    pub fn world_from_local(&self) -> &Affine3A {
+        &self.world_from_local
+    }
+
+    /// World volume of a unit of the volume's own.
+    pub fn world_volume(&self) -> f64 {
+        self.world_volume
+    }
+
     /// A ray of the world in the volume's space; its parameter stays the world's.
     fn local_ray(&self, ray: &Ray) -> Ray {
         Ray::new(

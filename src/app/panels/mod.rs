@@ -1,7 +1,9 @@
 //! The panels, one file each.
 
+pub mod advanced;
 pub mod bars;
 pub mod camera;
+pub mod diagnostics;
 pub mod emission;
 pub mod film;
 pub mod help;
@@ -13,6 +15,7 @@ pub mod volume;
 use egui::{CollapsingHeader, RichText, Ui};
 
 use super::commands::Command;
+use super::diagnostics::Wanted;
 use super::loader::Grids;
 use super::state::Editor;
 use super::theme::color;
@@ -25,14 +28,25 @@ pub struct Panel<'a> {
     pub grids: &'a Grids,
     /// What was guessed when a bare volume was opened, one a line.
     pub notes: &'a [String],
+    /// What is shown to understand the render.
+    pub wanted: &'a mut Wanted,
     /// Commands that buttons ask for.
     pub commands: &'a mut Vec<Command>,
 }
 
 /// A part of the panel column under a heading that folds it.
 pub fn section(ui: &mut Ui, title: &str, contents: impl FnOnce(&mut Ui)) {
+    section_under(ui, title, true, contents);
+}
+
+/// The same, folded until asked for.
+pub fn folded_section(ui: &mut Ui, title: &str, contents: impl FnOnce(&mut Ui)) {
+    section_under(ui, title, false, contents);
+}
+
+fn section_under(ui: &mut Ui, title: &str, open: bool, contents: impl FnOnce(&mut Ui)) {
     let title = RichText::new(title).heading().color(color::TEXT_STRONG);
-    CollapsingHeader::new(title).default_open(true).show_unindented(ui, contents);
+    CollapsingHeader::new(title).default_open(open).show_unindented(ui, contents);
     ui.add_space(super::theme::space::TIGHT);
     ui.separator();
 }

@@ -127,6 +127,13 @@ fn zoom(ui: &mut Ui, scale: f32) {
 fn probe(ui: &mut Ui, viewport: &Viewport) {
     let Some(probe) = viewport.probe else { return };
     ui.separator();
+    if let Some(steps) = probe.steps {
+        let text =
+            format!("{:>4}, {:<4} {:>9} steps", probe.pixel.x, probe.pixel.y, channel(steps));
+        ui.label(RichText::new(text).monospace().color(color::TEXT))
+            .on_hover_text("The pixel under the pointer and its mean tracking steps per sample.");
+        return;
+    }
     let [r, g, b, _] = probe.value;
     let text = format!(
         "{:>4}, {:<4} {:>8} {:>8} {:>8}",

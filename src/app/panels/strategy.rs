@@ -1,16 +1,16 @@
-//! The toggles, what each does, and the finer choices behind them.
+//! The toggles and what each does.
 
 use egui::{CollapsingHeader, Layout, RichText, Ui};
 
-use super::{Panel, explain, section};
+use super::{Panel, advanced, explain, section};
 use crate::app::commands::Command;
 use crate::app::effect::{Toggle, no_effect};
 use crate::app::theme::{color, space};
-use crate::app::widgets::{Number, key_help, key_summary, row, segments};
-use crate::transport::strategy::{Advanced, BoostMode, Preset, Strategy};
+use crate::app::widgets::{capitalized, key_help, key_summary, row, segments};
+use crate::transport::strategy::{Preset, Strategy};
 
 /// A toggle with its command, which knows its name and key, and its key in the scene file.
-const TOGGLES: [(Toggle, Command, &str); 3] = [
+const TOGGLES: [(Toggle, Command, &str); 4] = [
     (Toggle::EmissionDecoupling, Command::EmissionDecoupling, "strategy.emission_decoupling"),
     (
         Toggle::EmissionRatioTracking,
@@ -18,6 +18,7 @@ const TOGGLES: [(Toggle, Command, &str); 3] = [
         "strategy.emission_ratio_tracking",
     ),
     (Toggle::MajorantBoost, Command::MajorantBoost, "strategy.majorant_boost"),
+    (Toggle::FireAsLight, Command::FireAsLight, "strategy.nee"),
 ];
 
 /// The switch of `toggle` in `strategy`.
@@ -26,6 +27,7 @@ pub fn switch(strategy: &mut Strategy, toggle: Toggle) -> &mut bool {
         Toggle::EmissionDecoupling => &mut strategy.emission_decoupling,
         Toggle::EmissionRatioTracking => &mut strategy.emission_ratio_tracking,
         Toggle::MajorantBoost => &mut strategy.majorant_boost,
+        Toggle::FireAsLight => &mut strategy.nee,
     }
 }
 
@@ -44,7 +46,7 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
         }
         ui.add_space(space::TIGHT);
         CollapsingHeader::new("Advanced").id_salt("strategy advanced").show(ui, |ui| {
-            advanced(ui, panel);
+            advanced::show(ui, panel);
         });
     });
 }
@@ -103,64 +105,4 @@ fn presets(ui: &mut Ui, panel: &mut Panel<'_>) {
         *strategy = Strategy { advanced: strategy.advanced, ..preset.strategy() };
         panel.editor.name_edit(format!("preset {}", preset.name()));
     }
-}
-
-fn capitalized(name: &str) -> String {
-    let mut letters = name.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
-}
-
-fn advanced(ui: &mut Ui, panel: &mut Panel<'_>) {
-    let opened = panel.editor.opened().settings.strategy.advanced;
-    let advanced = &mut panel.editor.document.settings.strategy.advanced;
-    let mut edit = None;
-    let modes = [
-        ("Clamped", "Never takes steps much shorter than a voxel."),
-        ("Literal", "The talk's maximum of the two majorants, without the clamp."),
-    ];
-    let all = [BoostMode::Clamped, BoostMode::Literal];
-    let chosen = all.iter().position(|mode| *mode == advanced.boost_mode);
-    let clicked = row(ui, "Boost mode", &key_help("strategy.advanced.boost_mode"), |ui| {
-        segments(ui, &modes, chosen)
-    });
-    if let Some(mode) = clicked.inner.and_then(|index| all.get(index)) {
-        advanced.boost_mode = *mode;
-        edit = Some("boost mode");
-    }
-    if boost_amount(ui, advanced, opened) {
-        edit = Some("boost amount");
-    }
-    let clamped = advanced.boost_mode == BoostMode::Clamped;
-    ui.add_enabled_ui(clamped, |ui| {
-        if boost_clamp(ui, advanced, opened) {
-            edit = Some("boost clamp");
-        }
-    });
-    if let Some(name) = edit {
-        panel.editor.name_edit(name);
-    }
-}
-
-fn boost_amount(ui: &mut Ui, advanced: &mut Advanced, opened: Advanced) -> bool {
-    Number {
-        name: "Boost amount",
-        key: "strategy.advanced.boost_amount",
-        soft: 0.0..=32.0,
-        logarithmic: true,
-        unit: "",
-        reset: opened.boost_amount,
-    }
-    .show(ui, &mut advanced.boost_amount)
-}
-
-fn boost_clamp(ui: &mut Ui, advanced: &mut Advanced, opened: Advanced) -> bool {
-    Number {
-        name: "Boost clamp",
-        key: "strategy.advanced.boost_clamp_voxels",
-        soft: 0.1..=10.0,
-        logarithmic: true,
-        unit: " vx",
-        reset: opened.boost_clamp_voxels,
-    }
-    .show(ui, &mut advanced.boost_clamp_voxels)
 }

@@ -18,8 +18,13 @@ impl App {
         let title = self.title();
         let plain = self.panel_frame();
         let grids = self.engine.grids().clone();
-        let mut panel =
-            Panel { editor: &mut self.editor, grids: &grids, notes: &self.notes, commands };
+        let mut panel = Panel {
+            editor: &mut self.editor,
+            grids: &grids,
+            notes: &self.notes,
+            wanted: &mut self.diagnostics.wanted,
+            commands,
+        };
         let bar = plain.inner_margin(Margin::symmetric(8, 3));
         egui::Panel::top("menu").frame(bar).show(ui, |ui| {
             panels::menu::show(ui, &mut panel, &title);
@@ -59,8 +64,12 @@ impl App {
                 .show(ui, |ui| self.notices.show(ui));
         }
         let picture = self.engine.picture().cloned();
+        let steps = picture.as_deref().and_then(|picture| self.diagnostics.step_scale(picture));
         egui::CentralPanel::no_frame().show(ui, |ui| {
-            self.viewport.show(ui, &mut self.editor, picture.as_ref());
+            let view = self.viewport.show(ui, &mut self.editor, picture.as_ref(), steps);
+            if let (Some(view), Some(picture)) = (view, &picture) {
+                self.diagnostics.show(ui, view, picture, &self.editor.document.settings);
+            }
         });
     }
 
@@ -116,6 +125,7 @@ fn column(ui: &mut Ui, panel: &mut Panel<'_>, frame: Frame, film: Option<UVec2>,
                 panels::volume::show(ui, panel);
                 panels::camera::show(ui, panel);
                 panels::film::show(ui, panel, film, largest);
+                panels::diagnostics::show(ui, panel.wanted);
             });
         });
     });

@@ -1,0 +1,88 @@
+//! What is shown to understand a render: cells drawn over the picture, and maps in its place. None
+//! of it belongs to the scene, the strategy or the record of edits.
+
+mod cells;
+mod legend;
+mod overlay;
+mod ramp;
+
+use egui::{Context, Rect, Ui};
+use glam::UVec2;
+
+pub use ramp::{STOPS, Scale, color as ramp_color, stops};
+
+use super::engine::Engine;
+use super::viewport::View;
+use crate::render::Picture;
+use crate::scene::{self, Settings};
+use cells::Gathering;
+use legend::Legend;
+
+/// What the cells drawn over the picture are colored by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CellValue {
+    /// The local majorant: the largest extinction in the cell, 1/length.
+    Majorant,
+    /// The power the cell emits, radiance × length².
+    Energy,
+}
+
+/// What the user asked to see.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Wanted {
+    /// The cells over the picture.
+    pub cells: Option<CellValue>,
+    /// Whether tracking steps take the place of the picture.
+    pub steps: bool,
+}
+
+/// What the user asked to see, and what is there to show it.
+#[derive(Default)]
+pub struct Diagnostics {
+    /// What the user asked to see.
+    pub wanted: Wanted,
+    gathering: Gathering,
+}
+
+impl Diagnostics {
+    /// Brings session and cells in line with what is wanted. Called once a frame.
+    pub fn update(&mut self, ctx: &Context, engine: &mut Engine) {
+        engine.set_shows_steps(self.wanted.steps);
+        let scene = engine.built().map(|built| &built.scene);
+        let wake = ctx.clone();
+        self.gathering.update(self.wanted.cells, scene, move || wake.request_repaint());
+    }
+
+    /// The scale of the steps of `picture` where they take its place.
+    pub fn step_scale(&self, picture: &Picture) -> Option<Scale> {
+        let range = picture.steps.range.filter(|_| self.wanted.steps)?;
+        Some(Scale::rounded(range))
+    }
+
+    /// Draws over the picture of `size` pixels that lies in `view`, and the legends in a corner.
+    pub fn show(&self, ui: &mut Ui, view: View, picture: &Picture, settings: &Settings) {
+        let mut legends = Vec::new();
+        if let Some(scale) = self.step_scale(picture) {
+            legends.push(Legend::of_steps(scale));
+        }
+        if let Some((value, cells)) = self.gathering.cells(self.wanted.cells) {
+            if let (Some(scale), Ok(camera)) = (cells.scale(), scene::camera(settings)) {
+                overlay::paint(ui, view, &camera, cells, scale);
+            }
+            legends.push(Legend::of_cells(value, cells));
+        }
+        legend::show(ui, view.rect, &legends);
+    }
+}
+
+/// Where a picture position, in its pixels, lies in the window.
+fn to_window(view: &View, at: glam::Vec2) -> egui::Pos2 {
+    let at = (view.placement.corner + at * view.placement.scale) / view.factor;
+    view.rect.min + egui::vec2(at.x, at.y)
+}
+
+/// The part of the window that the picture covers.
+fn picture_rect(view: &View, size: UVec2) -> Rect {
+    let corners = [glam::Vec2::ZERO, size.as_vec2()].map(|corner| to_window(view, corner));
+    Rect::from_min_max(corners[0], corners[1]).intersect(view.rect)
+}

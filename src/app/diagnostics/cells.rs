@@ -1,0 +1,322 @@
+//! The strongest cells of a scene's volumes, gathered behind the window's back.
+
+use std::sync::{Arc, mpsc};
+
+use glam::Vec3A;
+
+use super::{CellValue, Scale};
+use crate::math::Aabb;
+use crate::transport::Scene;
+use crate::volume::body::{Bounds, Region};
+use crate::volume::world::Instance;
+
+/// The most cells that are drawn.
+pub const MOST: usize = 4000;
+
+/// A cell in the world.
+#[derive(Clone, Debug)]
+pub struct Cell {
+    /// Its corners, numbered by the bits x, y, z.
+    pub corners: [Vec3A; 8],
+    /// The edge of a cube of its volume.
+    pub edge: f32,
+    /// What it is colored by.
+    pub value: f32,
+}
+
+impl Cell {
+    fn new(instance: &Instance, local: &Aabb, value: f32) -> Self {
+        let world_from_local = instance.world_from_local();
+        let corners = local.corners().map(|corner| world_from_local.transform_point3a(corner));
+        let volume = f64::from(local.size().element_product()) * instance.world_volume();
+        Self { corners, edge: volume.cbrt() as f32, value }
+    }
+
+    /// Its middle.
+    pub fn center(&self) -> Vec3A {
+        0.5 * (self.corners[0] + self.corners[7])
+    }
+}
+
+/// The cells of a scene that have a value, as far as they are drawn.
+#[derive(Clone, Debug, Default)]
+pub struct Cells {
+    /// The strongest, the weakest of them first.
+    pub strongest: Vec<Cell>,
+    /// How many have a value.
+    pub total: usize,
+}
+
+impl Cells {
+    /// Gathers the cells of `instances`. Volumes without borders have none.
+    pub fn gather(instances: &[Instance], value: CellValue) -> Self {
+        let mut sieve = Sieve::default();
+        for instance in instances {
+            visit(instance, value, |local, value| sieve.push(instance, local, value));
+        }
+        let strongest = sieve.finish();
+        let strongest = strongest.iter().map(|c| Cell::new(c.instance, &c.local, c.value));
+        Self { strongest: strongest.collect(), total: sieve.total }
+    }
+
+    /// The scale from the weakest to the strongest of them; none without cells.
+    pub fn scale(&self) -> Option<Scale> {
+        let (first, last) = (self.strongest.first()?, self.strongest.last()?);
+        Some(Scale::exact([first.value, last.value]))
+    }
+}
+
+/// Calls `found` with every cell of a volume in its own space, and its value in the world.
+fn visit(instance: &Instance, value: CellValue, mut found: impl FnMut(&Aabb, f32)) {
+    let volume = instance.volume();
+    match (value, volume.bounds()) {
+        (CellValue::Majorant, Bounds::Cells(grid)) => {
+            grid.for_each_cell(|_, cell, majorant| found(cell, majorant.mu_t));
+        }
+        (CellValue::Majorant, Bounds::Uniform(_, majorant)) => {
+            if *volume.region() != Region::Everywhere {
+                found(&volume.region().bounds(), majorant.mu_t);
+            }
+        }
+        (CellValue::Energy, _) => {
+            if let Some(energy) = volume.energy() {
+                energy.for_each_cell(|cell, power| {
+                    found(cell, (f64::from(power) * instance.world_volume()) as f32);
+                });
+            }
+        }
+    }
+}
+
+/// Keeps the largest [`MOST`] of any number of candidates.
+#[derive(Default)]
+struct Sieve<'a> {
+    kept: Vec<Candidate<'a>>,
+    /// What a candidate must exceed once enough are kept.
+    threshold: f32,
+    total: usize,
+}
+
+struct Candidate<'a> {
+    instance: &'a Instance,
+    local: Aabb,
+    value: f32,
+}
+
+impl<'a> Sieve<'a> {
+    fn push(&mut self, instance: &'a Instance, local: &Aabb, value: f32) {
+        if !(value > 0.0 && value.is_finite()) {
+            return;
+        }
+        self.total += 1;
+        if value > self.threshold {
+            self.kept.push(Candidate { instance, local: *local, value });
+            if self.kept.len() >= 2 * MOST {
+                self.prune();
+            }
+        }
+    }
+
+    fn prune(&mut self) {
+        if self.kept.len() > MOST {
+            let (_, last, _) =
+                self.kept.select_nth_unstable_by(MOST - 1, |a, b| b.value.total_cmp(&a.value));
+            self.threshold = last.value;
+            self.kept.truncate(MOST);
+        }
+    }
+
+    /// The largest, in ascending order.
+    fn finish(&mut self) -> &[Candidate<'a>] {
+        self.prune();
+        self.kept.sort_unstable_by(|a, b| a.value.total_cmp(&b.value));
+        &self.kept
+    }
+}
+
+/// Gathers cells on another thread, again whenever the volumes change, and keeps the last ones
+/// until then.
+#[derive(Default)]
+pub struct Gathering {
+    done: Option<(Source, Cells)>,
+    under_way: Option<mpsc::Receiver<(Source, Cells)>>,
+}
+
+/// What cells are gathered from.
+#[derive(Clone)]
+struct Source {
+    value: CellValue,
+    scene: Arc<Scene>,
+}
+
+impl Source {
+    /// Whether both have the same volumes in the same places; a scene that only the camera or the
+    /// strategy changed shares them.
+    fn has_cells_of(&self, other: &Self) -> bool {
+        let (a, b) = (self.scene.world.instances(), other.scene.world.instances());
+        let same = |(a, b): (&Instance, &Instance)| {
+            Arc::ptr_eq(a.volume(), b.volume()) && a.world_from_local() == b.world_from_local()
+        };
+        self.value == other.value
+            && (Arc::ptr_eq(&self.scene, &other.scene)
+                || (a.len() == b.len() && std::iter::zip(a, b).all(same)))
+    }
+}
+
+impl Gathering {
+    /// Brings the cells in line with what is wanted of `scene`; `wake` is called when they are
+    /// there.
+    pub fn update(
+        &mut self,
+        wanted: Option<CellValue>,
+        scene: Option<&Arc<Scene>>,
+        wake: impl FnOnce() + Send + 'static,
+    ) {
+        let (Some(value), Some(scene)) = (wanted, scene) else {
+            *self = Self::default();
+            return;
+        };
+        if let Some(receiver) = &self.under_way {
+            match receiver.try_recv() {
+                Ok(done) => self.done = Some(done),
+                Err(mpsc::TryRecvError::Empty) => return,
+                // The thread failed; the next line tries again only if the cells are missing.
+                Err(mpsc::TryRecvError::Disconnected) => {}
+            }
+            self.under_way = None;
+        }
+        let source = Source { value, scene: scene.clone() };
+        match &mut self.done {
+            // The newer scene lets go of the older one.
+            Some((known, _)) if known.has_cells_of(&source) => *known = source,
+            _ => self.start(source, wake),
+        }
+    }
+
+    fn start(&mut self, source: Source, wake: impl FnOnce() + Send + 'static) {
+        let (sender, receiver) = mpsc::channel();
+        rayon::spawn(move || {
+            let cells = Cells::gather(source.scene.world.instances(), source.value);
+            // The window may have closed.
+            let _ = sender.send((source, cells));
+            wake();
+        });
+        self.under_way = Some(receiver);
+    }
+
+    /// The cells gathered last, if they are of the value wanted.
+    pub fn cells(&self, wanted: Option<CellValue>) -> Option<(CellValue, &Cells)> {
+        let (source, cells) = self.done.as_ref()?;
+        (wanted == Some(source.value)).then_some((source.value, cells))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::error::NO_PROGRESS;
+    use crate::scene::{Overrides, Settings, VolumeCache, build, parse};
+
+    fn settings() -> Settings {
+        parse(TWO, "", Path::new(""), &Overrides::default()).unwrap()
+    }
+
+    fn scene() -> Scene {
+        build(&settings(), &VolumeCache::default(), NO_PROGRESS).unwrap()
+    }
+
+    const TWO: &str = r#"
+[[volume]]
+shape = "noise"
+half_size = 2.0
+density = { scale = 3.0 }
+emission = { mode = "source", le = 2.0 }
+rotate = [0, 0, 30]
+scale = [1, 2, 1]
+translate = [5, 0, 0]
+
+[[volume]]
+shape = "box"
+half_size = 0.5
+density = { scale = 7.0 }
+emission = { mode = "constant", value = 3.0 }
+
+[[volume]]
+shape = "everywhere"
+density = { scale = 0.1 }
+"#;
+
+    #[test]
+    fn cells_lie_where_their_volume_is_placed() {
+        let scene = scene();
+        let cells = Cells::gather(scene.world.instances(), CellValue::Majorant);
+        let uniform: Vec<_> = cells.strongest.iter().filter(|cell| cell.value > 6.9).collect();
+        let [uniform] = uniform.as_slice() else { panic!("{} uniform cells", uniform.len()) };
+        assert!(uniform.center().length() < 1e-6 && (uniform.edge - 1.0).abs() < 1e-6);
+        let bounds = scene.world.instances()[0].bounds();
+        let noise = cells.strongest.iter().filter(|cell| cell.value < 6.9);
+        let mut count = 0;
+        for cell in noise {
+            let center = cell.center();
+            assert!(center.cmpge(bounds.min).all() && center.cmple(bounds.max).all(), "{center}");
+            count += 1;
+        }
+        assert!(count > 100, "{count} cells of noise");
+        assert!(cells.strongest.is_sorted_by(|a, b| a.value <= b.value));
+    }
+
+    /// The box: ε V = 3. The noise is placed with twice its own volume.
+    #[test]
+    fn powers_sum_to_those_of_the_volumes() {
+        let scene = scene();
+        for (instance, scale) in std::iter::zip(scene.world.instances(), [2.0, 1.0]) {
+            let mut sum = 0.0;
+            visit(instance, CellValue::Energy, |_, value| sum += f64::from(value));
+            let power = scale * f64::from(instance.volume().energy().unwrap().power());
+            assert!((sum / power - 1.0).abs() < 1e-4, "{sum} in cells, {power} in all");
+        }
+        let cells = Cells::gather(&scene.world.instances()[1..], CellValue::Energy);
+        let values: Vec<f32> = cells.strongest.iter().map(|cell| cell.value).collect();
+        assert!(matches!(values[..], [value] if (value - 3.0).abs() < 1e-5), "{values:?}");
+    }
+
+    #[test]
+    fn only_the_strongest_of_many_are_kept_and_all_are_counted() {
+        let scene = scene();
+        let instance = &scene.world.instances()[1];
+        let mut sieve = Sieve::default();
+        let unit = Aabb::centered(Vec3A::ONE);
+        let count = 5 * MOST;
+        for i in 0..count {
+            // Every value from 1 to `count` once, in no order.
+            let value = (i * 7919) % count + 1;
+            sieve.push(instance, &unit, value as f32);
+        }
+        for bad in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+            sieve.push(instance, &unit, bad);
+        }
+        let kept: Vec<f32> = sieve.finish().iter().map(|candidate| candidate.value).collect();
+        let expected: Vec<f32> = (count - MOST + 1..=count).map(|value| value as f32).collect();
+        assert_eq!(kept, expected);
+        assert_eq!(sieve.total, count);
+    }
+
+    #[test]
+    fn a_moved_camera_keeps_the_cells_and_a_moved_volume_does_not() {
+        let mut settings = settings();
+        let cache = VolumeCache::default();
+        let mut source = || {
+            let scene = build(&settings, &cache, NO_PROGRESS).unwrap();
+            let source = Source { value: CellValue::Majorant, scene: Arc::new(scene) };
+            settings.camera.position[0] += 1.0;
+            source
+        };
+        let (first, second) = (source(), source());
+        assert!(first.has_cells_of(&second));
+        settings.volume[0].translate[2] = 1.0;
+        let scene = Arc::new(build(&settings, &cache, NO_PROGRESS).unwrap());
+        assert!(!first.has_cells_of(&Source { scene, ..second }));
+    }
+}

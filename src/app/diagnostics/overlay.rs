@@ -1,0 +1,149 @@
+//! Cells drawn over the picture: boxes where there are few, dots where there are many. What is in
+//! front hides nothing, so that the inside shows.
+
+use egui::{Color32, Mesh, Painter, Rect, Shape, Stroke, Ui};
+use glam::{UVec2, Vec3A};
+
+use super::cells::{Cell, Cells};
+use super::{Scale, picture_rect, ramp, to_window};
+use crate::app::viewport::View;
+use crate::transport::camera::Camera;
+
+/// Up to this many cells are drawn as boxes.
+const MOST_BOXES: usize = 128;
+/// Width of their edges in points.
+const LINE: f32 = 1.2;
+/// Share of a cell's width that its dot takes.
+const DOT: f32 = 0.22;
+/// Sides of the smallest and the largest dot in points.
+const DOT_SIDES: [f32; 2] = [1.5, 10.0];
+/// How much of the picture a dot covers.
+const DOT_OPACITY: f32 = 0.8;
+/// What is nearer to the camera than this share of a cell's edge is cut off.
+const NEAR: f32 = 1e-4;
+
+/// The edges of a box as pairs of corners that differ in one bit.
+const EDGES: [(usize, usize); 12] = [
+    (0, 1),
+    (2, 3),
+    (4, 5),
+    (6, 7),
+    (0, 2),
+    (1, 3),
+    (4, 6),
+    (5, 7),
+    (0, 4),
+    (1, 5),
+    (2, 6),
+    (3, 7),
+];
+
+/// Draws `cells` as `camera` sees them over the picture in `view`.
+pub fn paint(ui: &Ui, view: View, camera: &Camera, cells: &Cells, scale: Scale) {
+    let rect = picture_rect(&view, view.size);
+    let painter = ui.painter_at(rect);
+    let canvas = Canvas { view, camera, size: view.size };
+    if cells.strongest.len() <= MOST_BOXES {
+        cells.strongest.iter().for_each(|cell| canvas.draw_box(&painter, cell, scale));
+    } else {
+        let mut mesh = Mesh::default();
+        mesh.reserve_vertices(4 * cells.strongest.len());
+        mesh.reserve_triangles(2 * cells.strongest.len());
+        cells.strongest.iter().for_each(|cell| canvas.add_dot(&mut mesh, rect, cell, scale));
+        painter.add(Shape::mesh(mesh));
+    }
+}
+
+struct Canvas<'a> {
+    view: View,
+    camera: &'a Camera,
+    /// Of the picture in pixels.
+    size: UVec2,
+}
+
+impl Canvas<'_> {
+    fn draw_box(&self, painter: &Painter, cell: &Cell, scale: Scale) {
+        let corners = cell.corners.map(|corner| self.camera.view_from_world(corner));
+        let stroke = Stroke::new(LINE, ramp::color(scale.place(cell.value)));
+        let near = NEAR * cell.edge;
+        for (a, b) in EDGES {
+            if let Some([a, b]) = in_front([corners[a], corners[b]], near) {
+                painter.line_segment([self.window(a), self.window(b)], stroke);
+            }
+        }
+    }
+
+    fn add_dot(&self, mesh: &mut Mesh, visible: Rect, cell: &Cell, scale: Scale) {
+        let center = self.camera.view_from_world(cell.center());
+        if center.z <= NEAR * cell.edge {
+            return;
+        }
+        let points_per_pixel = self.view.placement.scale / self.view.factor;
+        let pixels = cell.edge * self.camera.pixels_per_length(self.size.x as f32, center.z);
+        let side = (DOT * pixels * points_per_pixel).clamp(DOT_SIDES[0], DOT_SIDES[1]);
+        let dot = Rect::from_center_size(self.window(center), egui::Vec2::splat(side));
+        if dot.is_finite() && visible.intersects(dot) {
+            let color = ramp::color(scale.place(cell.value));
+            mesh.add_colored_rect(dot, color.gamma_multiply(DOT_OPACITY));
+        }
+    }
+
+    /// Where a point in front of the camera, in its view, lies in the window.
+    fn window(&self, point: Vec3A) -> egui::Pos2 {
+        to_window(&self.view, self.camera.film_from_view(self.size, point))
+    }
+}
+
+/// The part of a line, given in the camera's view, that is farther away than `near`.
+fn in_front(line: [Vec3A; 2], near: f32) -> Option<[Vec3A; 2]> {
+    let [a, b] = line;
+    let cut =
+        |hidden: Vec3A, seen: Vec3A| hidden.lerp(seen, (near - hidden.z) / (seen.z - hidden.z));
+    match (a.z > near, b.z > near) {
+        (true, true) => Some([a, b]),
+        (true, false) => Some([a, cut(b, a)]),
+        (false, true) => Some([cut(a, b), b]),
+        (false, false) => None,
+    }
+}
+
+/// The ramp as a bar, from left to right.
+pub fn bar(rect: Rect) -> Mesh {
+    let mut mesh = Mesh::default();
+    for index in 0..=ramp::STOPS as u32 - 1 {
+        let place = index as f32 / (ramp::STOPS - 1) as f32;
+        let color: Color32 = ramp::color(place);
+        let x = egui::lerp(rect.x_range(), place);
+        mesh.colored_vertex(egui::pos2(x, rect.top()), color);
+        mesh.colored_vertex(egui::pos2(x, rect.bottom()), color);
+        if index > 0 {
+            let at = 2 * index;
+            mesh.add_triangle(at - 2, at - 1, at);
+            mesh.add_triangle(at - 1, at, at + 1);
+        }
+    }
+    mesh
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_are_cut_in_front_of_the_camera() {
+        let (behind, ahead) = (Vec3A::new(0.0, 0.0, -1.0), Vec3A::new(2.0, 0.0, 3.0));
+        let [a, b] = in_front([behind, ahead], 1.0).unwrap();
+        assert_eq!((a, b), (Vec3A::new(1.0, 0.0, 1.0), ahead));
+        let [b, a] = in_front([ahead, behind], 1.0).unwrap();
+        assert_eq!((a, b), (Vec3A::new(1.0, 0.0, 1.0), ahead));
+        assert_eq!(in_front([ahead, ahead], 1.0), Some([ahead, ahead]));
+        assert_eq!(in_front([behind, behind], 1.0), None);
+    }
+
+    #[test]
+    fn every_edge_joins_neighbors() {
+        let unique: std::collections::HashSet<_> = EDGES.iter().collect();
+        assert_eq!(unique.len(), 12);
+        assert!(EDGES.iter().all(|(a, b)| (a ^ b).is_power_of_two()));
+    }
+}

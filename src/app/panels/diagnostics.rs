@@ -1,0 +1,41 @@
+//! What can be shown to understand a render.
+
+use egui::Ui;
+
+use super::{explain, folded_section};
+use crate::app::diagnostics::{CellValue, Wanted};
+use crate::app::theme::space;
+use crate::app::widgets::{row, segments};
+
+const CELLS: [(Option<CellValue>, &str, &str); 3] = [
+    (None, "Off", "Only the picture."),
+    (
+        Some(CellValue::Majorant),
+        "Majorants",
+        "The largest extinction in each cell: how many steps per length a ray takes there at most, \
+         the boost apart. Tight where cells follow the smoke.",
+    ),
+    (
+        Some(CellValue::Energy),
+        "Energy",
+        "The power that each cell emits: how often fire as a light looks towards it.",
+    ),
+];
+
+/// Shows the section.
+pub fn show(ui: &mut Ui, wanted: &mut Wanted) {
+    folded_section(ui, "Diagnostics", |ui| {
+        let choices = CELLS.map(|(_, name, help)| (name, help));
+        let chosen = CELLS.iter().position(|(cells, ..)| *cells == wanted.cells);
+        let help = "Draws the cells that the volumes are divided into over the picture.";
+        let clicked = row(ui, "Cells", help, |ui| segments(ui, &choices, chosen)).inner;
+        if let Some((cells, ..)) = clicked.and_then(|index| CELLS.get(index)) {
+            wanted.cells = *cells;
+        }
+        ui.add_space(space::TIGHT);
+        let help = "Steps through the volume, real and null, averaged over the samples of each \
+                    pixel. Saved in an EXR as the channel steps.";
+        ui.checkbox(&mut wanted.steps, "Map of tracking steps").on_hover_text(help);
+        explain(ui, "Shows what each pixel costs in place of the picture.");
+    });
+}
