@@ -262,4 +262,157 @@ mod tests {
         // Standard error 1e-3; five of them.
         assert!((sum / f64::from(n) - 1.0).abs() < 5e-3);
     }
+
+    const SLOTS: [Slot; 18] = [
+        Slot::PixelX,
+        Slot::PixelY,
+        Slot::Emission,
+        Slot::TransmittanceA,
+        Slot::TransmittanceB,
+        Slot::Distance,
+        Slot::Event,
+        Slot::LightPick,
+        Slot::LightCell,
+        Slot::LightX,
+        Slot::LightY,
+        Slot::LightZ,
+        Slot::LightEmission,
+        Slot::LightTransmittanceA,
+        Slot::LightTransmittanceB,
+        Slot::TurnPick,
+        Slot::TurnX,
+        Slot::TurnY,
+    ];
+
+    /// The number of a slot, at a vertex that has it.
+    fn number(seed: u64, pixel: UVec2, sample: u32, slot: Slot, vertex: u32) -> f64 {
+        let mut rng = PathRng::stratified(seed, pixel, sample);
+        rng.enter_vertex(vertex);
+        f64::from(rng.at(slot))
+    }
+
+    #[test]
+    fn slots_share_numbers_only_between_pixel_and_turn() {
+        for (i, a) in SLOTS.iter().enumerate() {
+            for b in &SLOTS[..i] {
+                let pixel_and_turn = matches!(b, Slot::PixelX | Slot::PixelY)
+                    && matches!(a, Slot::TurnX | Slot::TurnY);
+                assert!(a.place() != b.place() || pixel_and_turn, "{a:?} and {b:?}");
+            }
+        }
+    }
+
+    /// Sixty-four samples of a randomization have one number in each sixty-fourth, and for the
+    /// pairs that matter most one point in each box of each shape; 24 and 53 bits alike.
+    #[test]
+    fn samples_of_a_randomization_are_spread_evenly() {
+        let pixel = UVec2::new(3, 70);
+        let randomizations = ACCUMULATORS as u32;
+        for randomization in 0..randomizations {
+            for (x, y) in [(Slot::PixelX, Slot::PixelY), (Slot::LightX, Slot::LightY)] {
+                let points: Vec<[f64; 2]> = (0..64)
+                    .map(|i| {
+                        let mut rng =
+                            PathRng::stratified(1, pixel, i * randomizations + randomization);
+                        rng.enter_vertex(STRATIFIED_VERTICES - 1);
+                        [f64::from(rng.at(x)), rng.at64(y)]
+                    })
+                    .collect();
+                for across in [1, 2, 4, 8, 16, 32, 64] {
+                    let down = 64 / across;
+                    let boxes: std::collections::HashSet<u32> = points
+                        .iter()
+                        .map(|p| {
+                            (p[0] * f64::from(across)) as u32 * down
+                                + (p[1] * f64::from(down)) as u32
+                        })
+                        .collect();
+                    assert_eq!(boxes.len(), 64, "{x:?} {y:?}: {across} by {down}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn later_vertices_and_plain_paths_are_random() {
+        let mut plain = PathRng::new(0, UVec2::ONE, 5);
+        let mut stratified = PathRng::stratified(0, UVec2::ONE, 5);
+        stratified.enter_vertex(STRATIFIED_VERTICES);
+        for slot in SLOTS {
+            assert_eq!(plain.at(slot), stratified.at(slot));
+            assert_eq!(plain.at64(slot), stratified.at64(slot));
+        }
+        let drawn = plain.at(Slot::TurnX);
+        assert_ne!(drawn, plain.at(Slot::TurnX));
+    }
+
+    /// z of the correlation of two numbers over the first eight samples of one randomization of
+    /// many pixels; sums over a pixel count once, as its samples depend on each other.
+    fn correlation(a: impl Fn(UVec2, u32) -> f64, b: impl Fn(UVec2, u32) -> f64) -> f64 {
+        let pixels = (0..2048).map(|i| UVec2::new(i % 64, i / 64));
+        let sums = pixels.map(|pixel| {
+            let samples = (0..8).map(|i| i * ACCUMULATORS as u32);
+            samples.map(|s| (a(pixel, s) - 0.5) * (b(pixel, s) - 0.5)).sum::<f64>()
+        });
+        let (n, sum, squares) = sums.fold((0.0, 0.0, 0.0), |(n, sum, squares), value| {
+            (n + 1.0, sum + value, squares + value * value)
+        });
+        sum / f64::sqrt(squares - sum * sum / n)
+    }
+
+    /// Numbers of different slots, vertices, randomizations, pixels and seeds do not know of each
+    /// other. Some 200 comparisons, each with |z| < 5: a false alarm has probability 1e-4, and a
+    /// correlation of 0.1 gives z around 13.
+    #[test]
+    fn numbers_for_different_purposes_are_uncorrelated() {
+        let mut worst: f64 = 0.0;
+        let mut check = |z: f64, what: &str| {
+            worst = worst.max(z.abs());
+            assert!(z.abs() < 5.0, "{what}: z {z}");
+        };
+        let of = |slot, vertex| move |pixel, s| number(0, pixel, s, slot, vertex);
+        for (i, &a) in SLOTS[2..].iter().enumerate() {
+            for &b in &SLOTS[2..2 + i] {
+                check(correlation(of(a, 1), of(b, 1)), &format!("{a:?} and {b:?}"));
+            }
+            check(correlation(of(a, 1), of(a, 2)), &format!("{a:?} of two vertices"));
+            let other = |pixel, s| number(0, pixel, s + 3, a, 1);
+            check(correlation(of(a, 1), other), &format!("{a:?} of two randomizations"));
+            let other = |pixel, s| number(1, pixel, s, a, 1);
+            check(correlation(of(a, 1), other), &format!("{a:?} of two seeds"));
+            for step in [UVec2::X, UVec2::Y, UVec2::ONE] {
+                let other = |pixel: UVec2, s| number(0, pixel + step, s, a, 1);
+                check(correlation(of(a, 1), other), &format!("{a:?} of pixels {step} apart"));
+            }
+        }
+        println!("largest |z| {worst:.2}");
+    }
+
+    /// Integrals over seeds of functions of all slots, with sample counts that are no powers of
+    /// two, agree with their values. 60 comparisons with |z| < 5.
+    #[test]
+    fn means_are_unbiased() {
+        for samples in [1, 3, 11, 100] {
+            for (k, &slot) in SLOTS[2..].iter().enumerate() {
+                let other = SLOTS[2 + (k + 5) % 16];
+                // cos(2πk u) + (u < 1/3) v² with mean 1/9.
+                let value = |seed, s| {
+                    let mut rng = PathRng::stratified(seed, UVec2::new(9, 4), s);
+                    rng.enter_vertex(2);
+                    let (u, v) = (rng.at64(slot), rng.at64(other));
+                    let step = if u < 1.0 / 3.0 { v * v } else { 0.0 };
+                    (std::f64::consts::TAU * (k + 1) as f64 * u).cos() + step
+                };
+                let means = (0..2000).map(|seed| {
+                    (0..samples).map(|s| value(seed, s)).sum::<f64>() / f64::from(samples)
+                });
+                let (n, sum, squares) = means.fold((0.0, 0.0, 0.0), |(n, sum, squares), m| {
+                    (n + 1.0, sum + m, squares + m * m)
+                });
+                let error = f64::sqrt((squares / n - (sum / n) * (sum / n)) / n);
+                let z = (sum / n - 1.0 / 9.0) / error;
+                assert!(z.abs() < 5.0, "{slot:?}, {samples} samples: {} ± {error}", sum / n);
+            }
+        }
+    }
 }
