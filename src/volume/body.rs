@@ -4,6 +4,7 @@ use glam::{IVec3, Vec3A};
 
 use super::{
     emission::Emission,
+    energy::Energy,
     field::{RgbField, ScalarField},
     majorant::{Majorant, MajorantGrid},
     medium::Coefficients,
@@ -99,6 +100,7 @@ pub struct Volume {
     voxel: Option<f32>,
     /// Largest ∫ lum ε along the probing chords of each axis, in the volume's own lengths.
     chords: Vec3A,
+    energy: Option<Energy>,
 }
 
 /// The bounds of a volume's coefficients.
@@ -122,7 +124,8 @@ impl Volume {
             _ => region.bounds().size(),
         };
         let bounds = Bounds::Uniform(inside, majorant);
-        Self { region, substance, bounds, voxel: None, chords: emission * size }
+        let energy = Energy::uniform(region, emission);
+        Self { region, substance, bounds, voxel: None, chords: emission * size, energy }
     }
 
     /// A volume whose coefficients vary inside a box, bounded over cells of about `cell_size`.
@@ -135,8 +138,9 @@ impl Volume {
     ) -> Self {
         let cells = MajorantGrid::build(bounds, cell_size, |cell| substance.majorant_over(cell));
         let chords = probe_chords(&cells, &substance);
+        let energy = Energy::varying(&cells, |local| luminance(substance.at(local).emission));
         let region = Region::Box(bounds);
-        Self { region, substance, bounds: Bounds::Cells(cells), voxel, chords }
+        Self { region, substance, bounds: Bounds::Cells(cells), voxel, chords, energy }
     }
 
     /// Where it is.
@@ -162,6 +166,11 @@ impl Volume {
     /// Largest ∫ lum ε along the probing chords of each axis, in the volume's own lengths.
     pub fn chords(&self) -> Vec3A {
         self.chords
+    }
+
+    /// Where its emitted power comes from; `None` where nothing emits and in all of space.
+    pub fn energy(&self) -> Option<&Energy> {
+        self.energy.as_ref()
     }
 }
 

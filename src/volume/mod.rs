@@ -2,7 +2,9 @@
 
 pub mod blackbody;
 pub mod body;
+pub mod cells;
 pub mod emission;
+pub mod energy;
 pub mod field;
 pub mod grid;
 pub mod majorant;

@@ -2,14 +2,19 @@
 //! each one's interval along a ray, each walks its own cells inside, and where they overlap the
 //! stretches are cut at every border and the majorants added.
 
+mod emissive;
+
 use std::sync::Arc;
 
 use glam::{Affine3A, Vec3A};
 use smallvec::SmallVec;
 
+use emissive::Emissive;
+
 use super::{
     body::{Bounds, Region, Volume},
-    majorant::{CellWalk, Majorant},
+    cells::CellWalk,
+    majorant::Majorant,
     medium::{Coefficients, Segment},
     phase::PhaseMix,
 };
@@ -22,8 +27,11 @@ const FEW: usize = 3;
 #[derive(Clone, Debug)]
 pub struct Instance {
     volume: Arc<Volume>,
+    world_from_local: Affine3A,
     local_from_world: Affine3A,
     bounds: Aabb,
+    /// World volume of a unit of the volume's own.
+    world_volume: f64,
     /// Turns a bound of lum ε into collisions per length along the brightest chord.
     emission_rate: f32,
     voxel_rate: f32,
@@ -43,12 +51,29 @@ impl Instance {
             region => region.bounds().transformed(&world_from_local),
         };
         let local_from_world = world_from_local.inverse();
-        Self { volume, local_from_world, bounds, emission_rate, voxel_rate }
+        let world_volume = columns.as_dmat3().determinant().abs();
+        Self {
+            volume,
+            world_from_local,
+            local_from_world,
+            bounds,
+            world_volume,
+            emission_rate,
+            voxel_rate,
+        }
     }
 
     /// The volume that is placed.
     pub fn volume(&self) -> &Arc<Volume> {
         &self.volume
+    }
+
+    /// A ray of the world in the volume's space; its parameter stays the world's.
+    fn local_ray(&self, ray: &Ray) -> Ray {
+        Ray::new(
+            self.local_from_world.transform_point3a(ray.origin),
+            self.local_from_world.transform_vector3a(ray.direction),
+        )
     }
 
     /// A box around it in the world; infinite for a volume without borders.
@@ -65,6 +90,7 @@ pub struct World {
     /// Indices of the bounded instances, in the hierarchy's order.
     bounded_indices: Vec<u32>,
     unbounded: Vec<u32>,
+    emissive: Emissive,
 }
 
 impl World {
@@ -80,7 +106,8 @@ impl World {
         }
         let boxes: Vec<Aabb> =
             bounded_indices.iter().map(|&i| instances[i as usize].bounds).collect();
-        Self { bounded: Bvh::new(&boxes), instances, bounded_indices, unbounded }
+        let (bounded, emissive) = (Bvh::new(&boxes), Emissive::new(&instances));
+        Self { instances, bounded, bounded_indices, unbounded, emissive }
     }
 
     /// The placed volumes.
@@ -243,10 +270,7 @@ struct Cursor<'w> {
 
 impl<'w> Cursor<'w> {
     fn enter(instance: &'w Instance, ray: &Ray, t_max: f32) -> Option<Self> {
-        let local = Ray::new(
-            instance.local_from_world.transform_point3a(ray.origin),
-            instance.local_from_world.transform_vector3a(ray.direction),
-        );
+        let local = instance.local_ray(ray);
         let (t0, t1) = instance.volume.region().intersect(&local, t_max)?;
         match instance.volume.bounds() {
             Bounds::Uniform(_, majorant) => {
@@ -276,7 +300,7 @@ impl<'w> Cursor<'w> {
         else {
             return false;
         };
-        match walk.next_occupied(grid) {
+        match grid.next_occupied(walk) {
             Some((t0, t1, majorant)) => {
                 (self.t0, self.t1, self.majorant) = (t0, t1, majorant);
                 true
