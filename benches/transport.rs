@@ -6,7 +6,8 @@ use std::sync::Arc;
 use divan::{Bencher, counter::ItemsCount};
 use flambeau::{
     error::NO_PROGRESS,
-    math::{PathRng, Ray},
+    light::{Emitter, LightTree, Receiver},
+    math::{Aabb, PathRng, Ray},
     scene::{self, Overrides, VolumeCache},
     transport::{
         Frame, PathSample, PixelSampler, Scene,
@@ -62,6 +63,40 @@ fn tracked_collisions(bencher: Bencher) {
         })
     };
     bencher.counter(ItemsCount::new(walk())).bench(walk);
+}
+
+/// The density of light sampling along camera rays through the fire.
+#[divan::bench]
+fn pdf_along(bencher: Bencher) {
+    let scene = explosion(Preset::Full);
+    let rays = rays(&scene);
+    let instance = &scene.world.instances()[0];
+    let all = || rays.iter().map(|ray| instance.emission_pdf_along(ray)).sum::<f32>();
+    bencher.counter(ItemsCount::new(rays.len())).bench(all);
+}
+
+/// Choosing one of many lights, with its probability once more as MIS needs it.
+#[divan::bench(args = [1, 200, 100_000])]
+fn light_tree_sample(bencher: Bencher, count: u32) {
+    let mut rng = PathRng::new(0, UVec2::ZERO, 0);
+    let mut point = || Vec3A::new(rng.uniform(), rng.uniform(), rng.uniform());
+    let emitters: Vec<Emitter> = (0..count)
+        .map(|_| {
+            let at = 100.0 * point();
+            let bounds = Aabb::new(at, at + Vec3A::splat(0.2));
+            Emitter { bounds, intensity: 1.0, cone: None }
+        })
+        .collect();
+    let tree = LightTree::new(&emitters);
+    let receivers: Vec<Receiver> =
+        (0..1000).map(|_| Receiver { position: 100.0 * point(), normal: None }).collect();
+    let all = || {
+        receivers.iter().enumerate().fold(0.0, |sum, (i, to)| {
+            let chosen = tree.sample(to, i as f64 / receivers.len() as f64);
+            sum + chosen.map_or(0.0, |(index, _)| tree.probability(index, to))
+        })
+    };
+    bencher.counter(ItemsCount::new(receivers.len())).bench(all);
 }
 
 /// Whole paths, counted in collisions.

@@ -2,9 +2,11 @@
 
 mod local;
 mod sun;
+mod tree;
 
 pub use local::{Point, Spot};
 pub use sun::Sun;
+pub use tree::{Emitter, LightTree, Receiver};
 
 use glam::{Vec2, Vec3A};
 

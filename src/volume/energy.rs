@@ -22,8 +22,8 @@ const POINTS: i32 = 16;
 /// Generators of the lattice, the first of them 1.
 const GENERATORS: [i32; 3] = [1, 3, 7];
 /// Share of its upper bound that every cell gets beside what was read: a spark between the points
-/// must not be a surprise. A voxel's own in a cell of 4³ has a mean of 1/64 of its peak.
-const SHARE_OF_BOUND: f64 = 1.0 / 32.0;
+/// must not be a surprise. That of one voxel in a cell of 4³ has a mean of 1/64 of its peak.
+const SHARE_OF_BOUND: f64 = 1.0 / 64.0;
 /// Smallest density relative to the largest, so that single precision holds both.
 const FAINTEST: f64 = 1e-30;
 
@@ -263,7 +263,7 @@ fn mean_over(bounds: &Aabb, emission: &impl Fn(Vec3A) -> f32) -> f64 {
 
 /// A value that sums and quotients stay numbers with: none is 0, infinity the largest.
 fn magnitude(value: f32) -> f64 {
-    f64::from(value.max(0.0).min(f32::MAX))
+    if value.is_nan() { 0.0 } else { f64::from(value.clamp(0.0, f32::MAX)) }
 }
 
 /// In single precision, neither infinite nor rounded to zero where it is above zero.

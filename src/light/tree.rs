@@ -1,0 +1,202 @@
+//! A hierarchy over many lights that finds, for a point to be lit, a light by what it may bring:
+//! power, distance and facing (Conty Estevez and Kulla, *Importance Sampling of Many Lights with
+//! Adaptive Tree Splitting*, 2018).
+//!
+//! At each node the descent chooses between two children by their importances. Where a light lies
+//! in the tree is kept with it as a trail of turns, so that its probability costs one descent too.
+
+mod build;
+mod cone;
+#[cfg(test)]
+mod tests;
+
+use glam::Vec3A;
+
+use super::MOST_IMPORTANT;
+use crate::math::Aabb;
+use cone::Cone;
+
+/// A light as the hierarchy sees it.
+#[derive(Clone, Copy, Debug)]
+pub struct Emitter {
+    /// A box around it.
+    pub bounds: Aabb,
+    /// Radiant intensity, W/sr; a rough value will do. Without any it is never chosen.
+    pub intensity: f32,
+    /// Of a light like a spot: the unit axis, and the cosine of the half angle about it outside
+    /// of which it sends nothing.
+    pub cone: Option<(Vec3A, f32)>,
+}
+
+/// Where light is wanted.
+#[derive(Clone, Copy, Debug)]
+pub struct Receiver {
+    /// The point.
+    pub position: Vec3A,
+    /// On surfaces the unit normal of the lit side.
+    pub normal: Option<Vec3A>,
+}
+
+/// The hierarchy; empty by default.
+#[derive(Clone, Debug, Default)]
+pub struct LightTree {
+    /// The root first, children of a node side by side.
+    nodes: Vec<Node>,
+    /// For each emitter the turns from the root, the first in the lowest bit, 1 for the second
+    /// child; `None` for those that are not in the tree.
+    trails: Vec<Option<u64>>,
+    /// Intensity of the brightest emitter.
+    brightest: f32,
+}
+
+#[derive(Clone, Debug)]
+struct Node {
+    bounds: Aabb,
+    /// Sum over its emitters, relative to the brightest of the tree.
+    intensity: f32,
+    /// Square of the distance below which the nearest emitter is not expected.
+    least_squared: f32,
+    cone: Cone,
+    kind: Kind,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Kind {
+    /// One emitter, by its index.
+    Leaf(u32),
+    /// Index of the first child; the second follows it.
+    Inner(u32),
+}
+
+/// Least product of distances, so that a light at the very point stays finite.
+const LEAST_SQUARED: f64 = 1e-60;
+/// Allowance for rounding in the horizon test, relative to the distance.
+const HORIZON_SLACK: f32 = 1e-6;
+
+impl LightTree {
+    /// Builds the hierarchy; indices below are those of `emitters`.
+    pub fn new(emitters: &[Emitter]) -> Self {
+        build::build(emitters)
+    }
+
+    /// Rough irradiance at the receiver of all lights in it, which weighs it against lights outside
+    /// of it. Finite, and above zero wherever one of them can contribute.
+    ///
+    /// A descent to the greatest importance, and all that it passes by: next to one of many lights
+    /// their common box says little.
+    pub fn importance(&self, to: &Receiver) -> f32 {
+        let Some(mut node) = self.nodes.first() else { return 0.0 };
+        let mut importance = node.importance(to);
+        let mut passed = 0.0;
+        while let Kind::Inner(first) = node.kind
+            && importance > 0.0
+        {
+            let [a, b] = &self.nodes[first as usize..][..2] else { break };
+            let [to_a, to_b] = [a, b].map(|child| child.importance(to));
+            passed += to_a.min(to_b);
+            (node, importance) = if to_a >= to_b { (a, to_a) } else { (b, to_b) };
+        }
+        let irradiance = f64::from(self.brightest) * (importance + passed);
+        if irradiance > 0.0 {
+            irradiance.clamp(f64::from(f32::MIN_POSITIVE), f64::from(MOST_IMPORTANT)) as f32
+        } else {
+            0.0
+        }
+    }
+
+    /// An emitter and its probability. `None` where none can contribute, or where the descent ends
+    /// among some that cannot though their common box promised it. Near values of `pick`, in
+    /// [0, 1), lead to near emitters.
+    pub fn sample(&self, to: &Receiver, mut pick: f64) -> Option<(u32, f32)> {
+        let mut node = self.nodes.first()?;
+        if let Kind::Leaf(emitter) = node.kind {
+            return (node.importance(to) > 0.0).then_some((emitter, 1.0));
+        }
+        let mut probability = 1.0;
+        loop {
+            let first = match node.kind {
+                Kind::Leaf(emitter) => return Some((emitter, rounded(probability))),
+                Kind::Inner(first) => first as usize,
+            };
+            let share = self.share_of_first(first, to)?;
+            if pick < share {
+                pick /= share;
+                probability *= share;
+                node = &self.nodes[first];
+            } else {
+                pick = (pick - share) / (1.0 - share);
+                probability *= 1.0 - share;
+                node = &self.nodes[first + 1];
+            }
+            pick = pick.clamp(0.0, 1.0 - f64::EPSILON);
+        }
+    }
+
+    /// The probability with which [`LightTree::sample`] finds an emitter.
+    pub fn probability(&self, index: u32, to: &Receiver) -> f32 {
+        let Some(&Some(mut trail)) = self.trails.get(index as usize) else { return 0.0 };
+        let mut node = &self.nodes[0];
+        if let Kind::Leaf(_) = node.kind {
+            return if node.importance(to) > 0.0 { 1.0 } else { 0.0 };
+        }
+        let mut probability = 1.0;
+        while let Kind::Inner(first) = node.kind {
+            let first = first as usize;
+            let Some(share) = self.share_of_first(first, to) else { return 0.0 };
+            let second = trail & 1;
+            probability *= if second == 0 { share } else { 1.0 - share };
+            node = &self.nodes[first + second as usize];
+            trail >>= 1;
+        }
+        if probability > 0.0 { rounded(probability) } else { 0.0 }
+    }
+
+    /// The probability to go on with the first of two children; `None` if neither can contribute.
+    #[inline]
+    fn share_of_first(&self, first: usize, to: &Receiver) -> Option<f64> {
+        let [a, b] = [0, 1].map(|child| self.nodes[first + child].importance(to));
+        let total = a + b;
+        if total <= 0.0 || total.is_nan() {
+            return None;
+        }
+        // However faint, what can contribute must not round to never.
+        let share = a / total;
+        let (low, high) = (f64::from(u8::from(a > 0.0)), f64::from(u8::from(b > 0.0)));
+        Some(share.clamp(low * f64::MIN_POSITIVE, 1.0 - high * f64::EPSILON))
+    }
+}
+
+impl Node {
+    /// Rough irradiance of its emitters at the receiver, all facing it, relative to the brightest
+    /// of the tree.
+    ///
+    /// For 1/d² stands 1/(nearest · farthest distance of the box), which is its mean along a line
+    /// towards the receiver and within π/2 of it along one across.
+    #[inline]
+    fn importance(&self, to: &Receiver) -> f64 {
+        let (low, high) = (self.bounds.min - to.position, self.bounds.max - to.position);
+        let nearest_squared = low.max(-high).max(Vec3A::ZERO).length_squared();
+        let farthest_squared = low.abs().max(high.abs()).length_squared();
+        let cosine = to.normal.map_or(1.0, |normal| {
+            // The greatest height of the box above the tangent plane.
+            let height = (normal * low).max(normal * high).element_sum();
+            let slack = HORIZON_SLACK * farthest_squared.sqrt();
+            if height < -slack {
+                return 0.0;
+            }
+            (height.max(slack) / nearest_squared.sqrt()).min(1.0)
+        });
+        if cosine == 0.0 || !self.cone.may_reach(&self.bounds, to.position) {
+            return 0.0;
+        }
+        let nearest_squared = f64::from(nearest_squared.max(self.least_squared).min(f32::MAX));
+        let farthest_squared = f64::from(farthest_squared.min(f32::MAX));
+        let squared = (nearest_squared * farthest_squared).sqrt().max(LEAST_SQUARED);
+        f64::from(self.intensity) * f64::from(cosine) / squared
+    }
+}
+
+/// In single precision, still above zero.
+fn rounded(probability: f64) -> f32 {
+    (probability as f32).max(f32::MIN_POSITIVE)
+}
