@@ -1,6 +1,7 @@
 //! Rays, boxes, frames, random numbers: what every other room stands on.
 
 mod aabb;
+mod blue_noise;
 mod bvh;
 mod frame;
 mod ray;

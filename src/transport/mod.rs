@@ -69,11 +69,11 @@ pub struct Frame {
 impl Frame {
     /// Follows one path and shows each of its steps to `observer`.
     pub fn trace(&self, pixel: UVec2, sample: u32, observer: &mut impl Observer) -> PathSample {
-        let numbers = match self.scene.strategy.advanced.low_discrepancy {
-            true => PathRng::stratified,
-            false => PathRng::new,
+        let mut rng = if self.scene.strategy.advanced.low_discrepancy {
+            PathRng::stratified(self.seed, pixel, sample)
+        } else {
+            PathRng::new(self.seed, pixel, sample)
         };
-        let mut rng = numbers(self.seed, pixel, sample);
         let offset = Vec2::new(rng.at(Slot::PixelX), rng.at(Slot::PixelY));
         let ray = self.scene.camera.ray(self.size, pixel, offset);
         path::trace(&self.scene, ray, &mut rng, observer)

@@ -11,6 +11,7 @@ use std::{path::Path, sync::Arc};
 use flambeau::{
     error::NO_PROGRESS,
     math::Rgb,
+    render::{Film, estimate::PixelEstimate},
     scene::{self, Overrides, VolumeCache},
     transport::{Frame, PathSample, PixelSampler, Scene, strategy::Strategy},
 };
@@ -90,33 +91,36 @@ pub fn name(strategy: &Strategy) -> String {
 /// Side of the film that single-value scenes are rendered on.
 const SIDE: u32 = 64;
 
-/// The mean over the whole film of what `of` takes from each path.
+/// The mean over the whole film of what `of` takes from each path, and its variance as the film's
+/// accumulators tell it, which holds for samples that depend on each other too.
 pub fn measure_with(scene: &Scene, paths: u32, of: impl Fn(&PathSample) -> Rgb + Sync) -> Estimate {
     let frame = Frame { scene: Arc::new(scene.clone()), size: UVec2::splat(SIDE), seed: seed() };
-    let samples = paths.div_ceil(SIDE * SIDE);
-    let rows: Vec<[[f64; 3]; 2]> = (0..SIDE)
+    let samples = paths.div_ceil(SIDE * SIDE).max(2);
+    let rows: Vec<Estimate> = (0..SIDE)
         .into_par_iter()
         .map(|y| {
-            let mut sums = [[0.0; 3]; 2];
+            let mut film = Film::new(UVec2::new(SIDE, 1)).unwrap();
+            let mut sums = Estimate::default();
             for x in 0..SIDE {
                 for s in 0..samples {
-                    let value = of(&frame.sample(UVec2::new(x, y), s));
-                    for c in 0..3 {
-                        let v = f64::from(value[c]);
-                        sums[0][c] += v;
-                        sums[1][c] += v * v;
-                    }
+                    let direct = of(&frame.sample(UVec2::new(x, y), s));
+                    film.add(UVec2::new(x, 0), &PathSample { direct, ..PathSample::default() });
                 }
+                let pixel = PixelEstimate::of(&film, UVec2::new(x, 0)).unwrap();
+                let (mean, variance) = (pixel.mean(), pixel.variance().unwrap());
+                (0..3).for_each(|c| sums.mean[c] += mean[c]);
+                (0..3).for_each(|c| sums.variance[c] += variance[c]);
             }
+            assert_eq!(film.totals.non_finite, 0);
             sums
         })
         .collect();
-    let n = f64::from(SIDE * SIDE * samples);
+    let pixels = f64::from(SIDE * SIDE);
     let mut estimate = Estimate::default();
     for c in 0..3 {
-        let [sum, squares] = [0, 1].map(|k| rows.iter().map(|row| row[k][c]).sum::<f64>());
-        estimate.mean[c] = sum / n;
-        estimate.variance[c] = (squares / n - (sum / n).powi(2)).max(0.0) / (n - 1.0);
+        estimate.mean[c] = rows.iter().map(|row| row.mean[c]).sum::<f64>() / pixels;
+        let variance = rows.iter().map(|row| row.variance[c]).sum::<f64>();
+        estimate.variance[c] = variance / (pixels * pixels);
     }
     estimate
 }
