@@ -44,7 +44,7 @@ impl Window {
         change(&mut self.settings, self.generation);
         let scene = Arc::new(scene::build(&self.settings, &self.cache, NO_PROGRESS).unwrap());
         self.session.start(Request {
-            sampler: Arc::new(Frame { scene, size: SIZE, seed: 0 }),
+            sampler: Arc::new(Frame::new(scene, SIZE, 0)),
             size: SIZE,
             spp: 0,
             generation: self.generation,

@@ -103,7 +103,7 @@ fn light_tree_sample(bencher: Bencher, count: u32) {
 #[divan::bench(args = ["baseline", "full"])]
 fn path_collisions(bencher: Bencher, preset: &str) {
     let scene = Arc::new(explosion(preset.parse().unwrap()));
-    let frame = Frame { scene, size: UVec2::splat(SIDE), seed: 0 };
+    let frame = Frame::new(scene, UVec2::splat(SIDE), 0);
     let paths = || {
         (0..SIDE * SIDE).fold(0u64, |sum, i| {
             let sample: PathSample = frame.sample(UVec2::new(i % SIDE, i / SIDE), 0);

@@ -102,11 +102,12 @@ fn the_error_falls_as_one_over_n() {
     const REFERENCE: u32 = 4096;
     let advanced = Advanced { low_discrepancy: false, ..Advanced::default() };
     let scene = with_strategy(&build(EVERYTHING), Strategy { advanced, ..Strategy::default() });
-    let frame = Frame { scene: Arc::new(scene), size: UVec2::splat(32), seed: common::seed() };
-    let errors: Vec<[f64; 4]> = (0..frame.size.element_product())
+    let size = UVec2::splat(32);
+    let frame = Frame::new(Arc::new(scene), size, common::seed());
+    let errors: Vec<[f64; 4]> = (0..size.element_product())
         .into_par_iter()
         .map(|i| {
-            let pixel = UVec2::new(i % frame.size.x, i / frame.size.x);
+            let pixel = UVec2::new(i % size.x, i / size.x);
             let gray = |s| f64::from(frame.sample(pixel, s).beauty().element_sum() / 3.0);
             let values: Vec<f64> = (0..SAMPLES).map(gray).collect();
             let reference =

@@ -14,7 +14,7 @@ use glam::UVec2;
 fn paths(text: &str, preset: Preset) -> Vec<PathSample> {
     let scene = common::with_strategy(&build(text), preset.strategy());
     let size = UVec2::splat(6);
-    let frame = Frame { scene: Arc::new(scene), size, seed: 0 };
+    let frame = Frame::new(Arc::new(scene), size, 0);
     (0..size.x * size.y).map(|i| frame.sample(UVec2::new(i % size.x, i / size.x), 0)).collect()
 }
 

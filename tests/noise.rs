@@ -56,7 +56,7 @@ fn variances(scene: &Scene, samples: u32) -> Vec<[f64; 2]> {
             let pixel = UVec2::new(i % SIDE, i / SIDE);
             let (mut within, mut means) = (0.0, Vec::new());
             for seed in 0..SEEDS {
-                let frame = Frame { scene: scene.clone(), size: UVec2::splat(SIDE), seed };
+                let frame = Frame::new(scene.clone(), UVec2::splat(SIDE), seed);
                 let mut film = Film::new(UVec2::ONE).unwrap();
                 (0..samples).for_each(|s| film.add(UVec2::ZERO, &frame.sample(pixel, s)));
                 let estimate = PixelEstimate::of(&film, UVec2::ZERO).unwrap();

@@ -18,7 +18,7 @@ type Sums = [f64; 2];
 
 fn gray_sums(scene: &Scene, samples: u32) -> Vec<Sums> {
     let size = UVec2::splat(SIDE as u32);
-    let frame = Frame { scene: Arc::new(scene.clone()), size, seed: seed() };
+    let frame = Frame::new(Arc::new(scene.clone()), size, seed());
     let pixels: Vec<UVec2> =
         (0..size.y).flat_map(|y| (0..size.x).map(move |x| UVec2::new(x, y))).collect();
     pixels

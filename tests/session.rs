@@ -174,7 +174,7 @@ fn the_reported_variance_is_that_between_seeds() {
     let (mut reported, mut means) = (0.0, Vec::new());
     for seed in 0..seeds {
         let job = Job {
-            sampler: Arc::new(Frame { scene: Arc::clone(&scene), size, seed }),
+            sampler: Arc::new(Frame::new(Arc::clone(&scene), size, seed)),
             size,
             limits: Limits { spp, seconds: None },
             resume: None,

@@ -132,7 +132,7 @@ fn pixel(index: u32) -> UVec2 {
 }
 
 fn frame(scene: &Arc<Scene>, seed: u64) -> Frame {
-    Frame { scene: scene.clone(), size: UVec2::splat(SIDE), seed }
+    Frame::new(scene.clone(), UVec2::splat(SIDE), seed)
 }
 
 /// By a loop over the pixels that keeps nothing but sums.

@@ -150,7 +150,7 @@ impl Built {
     pub fn request(&self, start: Start) -> Request {
         let Start { size, generation } = start;
         let film = &self.settings.film;
-        let sampler = Arc::new(Frame { scene: self.scene.clone(), size, seed: film.seed });
+        let sampler = Arc::new(Frame::new(self.scene.clone(), size, film.seed));
         Request { sampler, size, spp: film.spp, generation, resume: None }
     }
 }

@@ -84,7 +84,7 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
         None => (None, Spent::default()),
     };
     let size = UVec2::from_array(settings.film.size);
-    let sampler = Arc::new(Frame { scene: Arc::new(scene), size, seed: settings.film.seed });
+    let sampler = Arc::new(Frame::new(Arc::new(scene), size, settings.film.seed));
     let threads = arguments.threads.map(usize::from);
     let job = Job { sampler, size, limits, resume: film, threads };
     let render = show_progress(job, &interrupt)?;

@@ -41,7 +41,7 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
         return Err(Refusal::usage(Error::invalid("", "--pixel", reason)));
     }
     let scene = scene::build(&settings, &cache, NO_PROGRESS)?;
-    let frame = Frame { scene: Arc::new(scene), size, seed: settings.film.seed };
+    let frame = Frame::new(Arc::new(scene), size, settings.film.seed);
     let mut log = Log::default();
     let sample = frame.trace(pixel, arguments.sample, &mut log);
     print(&format!("{}{}", log.text, summary(&sample)))?;

@@ -7,7 +7,7 @@
 //! gathers the emission of all, and where they overlap nothing needs to be kept apart.
 
 use super::{
-    emission::{self, Errand},
+    emission::{Errand, Gatherer},
     scene::Scene,
     strategy::{LightSelection, NeeEvaluation, Strategy},
     tracking,
@@ -39,12 +39,19 @@ fn choice(strategy: &Strategy) -> Choice {
 }
 
 /// Light that a sampled light sends to `vertex` and on along the path, and the collisions of the
-/// walk towards it.
-pub fn sample_lights(scene: &Scene, vertex: &Vertex, rng: &mut PathRng) -> (Rgb, u32) {
+/// walk towards it. `gatherer` looks at volumes.
+pub fn sample_lights(
+    scene: &Scene,
+    gatherer: &Gatherer,
+    vertex: &Vertex,
+    rng: &mut PathRng,
+) -> (Rgb, u32) {
     let from = vertex.receiver();
     match scene.lights.choose(&from, choice(&scene.strategy), rng) {
         None => (Rgb::ZERO, 0),
-        Some((Light::Volume(instance), _)) => sample_volume(scene, vertex, *instance, rng),
+        Some((Light::Volume(instance), _)) => {
+            sample_volume(scene, gatherer, vertex, *instance, rng)
+        }
         Some((light, probability)) => sample_solid(scene, vertex, light, probability, rng),
     }
 }
@@ -75,7 +82,13 @@ fn sample_solid(
 }
 
 /// A look at an emissive volume: a direction towards where its power comes from.
-fn sample_volume(scene: &Scene, vertex: &Vertex, instance: u32, rng: &mut PathRng) -> (Rgb, u32) {
+fn sample_volume(
+    scene: &Scene,
+    gatherer: &Gatherer,
+    vertex: &Vertex,
+    instance: u32,
+    rng: &mut PathRng,
+) -> (Rgb, u32) {
     let from = vertex.receiver();
     let u = [Slot::LightX, Slot::LightY, Slot::LightZ].map(|slot| rng.at(slot)).into();
     let pick = rng.at64(Slot::LightCell);
@@ -97,7 +110,7 @@ fn sample_volume(scene: &Scene, vertex: &Vertex, instance: u32, rng: &mut PathRn
             let t_max =
                 surface::intersect(&scene.surfaces, &ray).map_or(f32::INFINITY, |end| end.hit.t);
             let medium = scene.world.along(ray, t_max);
-            let glow = emission::gather(medium, &scene.strategy, Errand::Light, rng);
+            let glow = gatherer.gather(medium, Errand::Light, rng);
             (glow.emission / light_pdf, glow.collisions)
         }
         NeeEvaluation::Point => {

@@ -6,10 +6,15 @@
 
 use std::ops::ControlFlow;
 
+use glam::UVec2;
+
 use super::{
-    strategy::{BoostMode, Strategy},
+    optimal,
+    scene::Scene,
+    strategy::{Advanced, BoostMode, Strategy},
     stratified,
     tracking::{Collision, EMISSION_FLOOR, Walk, exp_neg, null_coefficient, roulette, track},
+    tuning,
 };
 use crate::{
     math::{PathRng, Rgb},
@@ -38,27 +43,87 @@ pub enum Errand {
     Light,
 }
 
-/// Gathers the emission along the medium by the walk that `strategy` asks for.
-pub fn gather(medium: MediumRay, strategy: &Strategy, errand: Errand, rng: &mut PathRng) -> Glow {
-    let advanced = &strategy.advanced;
-    if strategy.majorant_boost && advanced.boost_mode == BoostMode::Stratified {
-        return stratified::gather(medium, advanced.boost_amount, errand, rng);
+impl Errand {
+    /// How many of `looks` along the brightest chord the errand is worth. Camera rays are looked at
+    /// closely. Any other ray is one of many directions whose choice is noisier than a glance
+    /// along it.
+    pub(super) fn share(self, looks: f32) -> f32 {
+        match self {
+            Self::Camera => looks,
+            Self::Scattered | Self::Light => 0.25 * looks,
+        }
     }
-    by_ratio_tracking(medium, strategy, rng)
+}
+
+/// The walk that a strategy asks for, ready to be taken any number of times.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gatherer(Kind);
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Kind {
+    RatioTracking(EmissionMajorant),
+    /// With that many looks along the brightest chord.
+    Stratified(f32),
+    /// The same.
+    Optimal(f32),
+}
+
+impl Gatherer {
+    /// For a picture of `size` pixels. The optimal majorant takes a few milliseconds to find out
+    /// how often to look; nothing else is measured.
+    pub fn new(scene: &Scene, size: UVec2) -> Self {
+        let Strategy { majorant_boost, emission_ratio_tracking, advanced, .. } = scene.strategy;
+        Self(match advanced.boost_mode {
+            BoostMode::Stratified if majorant_boost => Kind::Stratified(advanced.boost_amount),
+            BoostMode::Optimal if majorant_boost && advanced.boost_amount == 0.0 => {
+                Kind::Optimal(0.0)
+            }
+            // Looks at lights alone are not measured either: there is nothing like them in view.
+            BoostMode::Optimal if majorant_boost && !emission_ratio_tracking => {
+                Kind::Optimal(advanced.boost_amount)
+            }
+            BoostMode::Optimal if majorant_boost => {
+                let scale = advanced.boost_amount / Advanced::default().boost_amount;
+                Kind::Optimal(scale * tuning::looks(scene, size))
+            }
+            _ => Kind::RatioTracking(EmissionMajorant::of(&scene.strategy)),
+        })
+    }
+
+    /// By the optimal majorant, with so many looks along the brightest chord.
+    pub(super) fn optimal(looks: f32) -> Self {
+        Self(Kind::Optimal(looks))
+    }
+
+    /// Gathers the emission along the medium.
+    pub fn gather(&self, medium: MediumRay, errand: Errand, rng: &mut PathRng) -> Glow {
+        match self.0 {
+            Kind::RatioTracking(majorant) => {
+                by_rate(medium, |segment, _| majorant.rate(segment), rng)
+            }
+            Kind::Stratified(looks) => stratified::gather(medium, looks, errand, rng),
+            Kind::Optimal(looks) => optimal::gather(medium, looks, errand, rng),
+        }
+    }
 }
 
 /// Emission ratio tracking (Huang et al. 2021, algorithm 1): a walk of its own with P_n = 1 that
 /// neither scatters nor is absorbed. At each tentative collision L += w ε/μ̄, then w ·= μ_n/μ̄;
-/// closed form in uniform segments.
-fn by_ratio_tracking(medium: MediumRay, strategy: &Strategy, rng: &mut PathRng) -> Glow {
-    struct EmissionRatio {
-        majorant: EmissionMajorant,
+/// closed form in uniform segments. `rate` gives the majorant μ̄ of a segment and may heed the
+/// walk's weight w.
+pub(super) fn by_rate(
+    medium: MediumRay,
+    rate: impl FnMut(&Segment, Rgb) -> f32,
+    rng: &mut PathRng,
+) -> Glow {
+    struct EmissionRatio<F> {
+        rate: F,
         weight: Rgb,
         emission: Rgb,
     }
-    impl Walk for EmissionRatio {
-        fn rate(&self, segment: &Segment) -> f32 {
-            self.majorant.rate(segment)
+    impl<F: FnMut(&Segment, Rgb) -> f32> Walk for EmissionRatio<F> {
+        fn rate(&mut self, segment: &Segment) -> f32 {
+            (self.rate)(segment, self.weight)
         }
         fn cross(&mut self, medium: &MediumRay, segment: &Segment, _: &mut PathRng) -> bool {
             let c = medium.coefficients(segment.t0);
@@ -79,8 +144,7 @@ fn by_ratio_tracking(medium: MediumRay, strategy: &Strategy, rng: &mut PathRng) 
             roulette(&mut self.weight, rng)
         }
     }
-    let majorant = EmissionMajorant::of(strategy);
-    let mut walk = EmissionRatio { majorant, weight: Rgb::ONE, emission: Rgb::ZERO };
+    let mut walk = EmissionRatio { rate, weight: Rgb::ONE, emission: Rgb::ZERO };
     let collisions = track(medium, rng, &mut walk);
     Glow { emission: walk.emission, transmittance: walk.weight, collisions }
 }
@@ -103,7 +167,7 @@ pub(super) fn attenuated(emission: Rgb, mu_t: Rgb, length: f32) -> Rgb {
 /// The majorant of a walk that gathers emission by collisions: μ̄ = max(maj μ_t, boost · maj ε),
 /// the boosted part at most one collision per voxel unless it is taken literally (Huang et al.
 /// 2021, section 2). It never goes below maj μ_t, nor below a floor wherever something emits.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct EmissionMajorant {
     /// Collisions along the brightest chord.
     boost: f32,
@@ -125,7 +189,7 @@ impl EmissionMajorant {
 
     #[inline]
     pub(super) fn rate(&self, segment: &Segment) -> f32 {
-        let floor = segment.majorant.max(EMISSION_FLOOR * segment.emission_rate);
+        let floor = least_rate(segment);
         // Without voxels there is nothing to clamp by.
         let most = if segment.voxel_rate > 0.0 {
             segment.voxel_rate * self.per_voxel
@@ -134,4 +198,11 @@ impl EmissionMajorant {
         };
         floor.max((self.boost * segment.emission_rate).min(most))
     }
+}
+
+/// The least majorant that emission may be gathered under: maj μ_t, and a floor wherever something
+/// emits.
+#[inline]
+pub(super) fn least_rate(segment: &Segment) -> f32 {
+    segment.majorant.max(EMISSION_FLOOR * segment.emission_rate)
 }

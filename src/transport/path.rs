@@ -11,7 +11,7 @@
 use super::{
     PathSample,
     direct::{self, Departure},
-    emission::{self, Errand},
+    emission::{Errand, Gatherer},
     observer::{Observer, Step},
     scene::Scene,
     tracking::{self, Event, Flight},
@@ -28,15 +28,17 @@ pub const GUARD: u32 = 100_000;
 /// Scattering events and reflections before roulette may end a path.
 const ROULETTE_AFTER: u32 = 3;
 
-/// Follows one path from the camera along `ray`.
+/// Follows one path from the camera along `ray`; `gatherer` is the emission's own walk.
 pub fn trace(
     scene: &Scene,
+    gatherer: &Gatherer,
     ray: Ray,
     rng: &mut PathRng,
     observer: &mut impl Observer,
 ) -> PathSample {
     let mut path = Path {
         scene,
+        gatherer,
         ray,
         throughput: Rgb::ONE,
         scatters: 0,
@@ -49,6 +51,7 @@ pub fn trace(
 
 struct Path<'s> {
     scene: &'s Scene,
+    gatherer: &'s Gatherer,
     ray: Ray,
     throughput: Rgb,
     /// Scattering events and reflections so far.
@@ -118,7 +121,7 @@ impl Path<'_> {
         observer: &mut impl Observer,
     ) -> Rgb {
         let errand = if self.departure.is_none() { Errand::Camera } else { Errand::Scattered };
-        let glow = emission::gather(medium, &self.scene.strategy, errand, rng);
+        let glow = self.gatherer.gather(medium, errand, rng);
         self.count(glow.collisions);
         let departure = self.departure.as_ref();
         let radiance = direct::at_the_end(self.scene, &self.ray, end, departure);
@@ -148,7 +151,7 @@ impl Path<'_> {
         self.scatters += 1;
         rng.enter_vertex(self.scatters);
         observer.step(Step::Vertex { vertex, throughput: self.throughput });
-        let (light, collisions) = direct::sample_lights(self.scene, vertex, rng);
+        let (light, collisions) = direct::sample_lights(self.scene, self.gatherer, vertex, rng);
         self.count(collisions);
         let light = self.throughput * light;
         observer.step(Step::Light { contribution: light });

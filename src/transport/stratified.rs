@@ -28,12 +28,11 @@ struct Effort {
 }
 
 impl Effort {
-    /// Camera rays are looked at closely. Any other ray is one of many directions whose choice is
-    /// noisier than a glance along it.
     fn new(boost: f32, errand: Errand) -> Self {
-        let (looks, reads) = match errand {
-            Errand::Camera => (boost, 6.0),
-            Errand::Scattered | Errand::Light => (0.25 * boost, 1.0),
+        let looks = errand.share(boost);
+        let reads = match errand {
+            Errand::Camera => 6.0,
+            Errand::Scattered | Errand::Light => 1.0,
         };
         let (jitter, comb_jitters) = match errand {
             Errand::Camera | Errand::Scattered => {

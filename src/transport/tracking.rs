@@ -30,8 +30,9 @@ pub(super) const ROULETTE_BELOW: f32 = 0.05;
 
 /// What a walk does on its way.
 pub(super) trait Walk {
-    /// The rate of tentative collisions μ̄ in a segment, at least its majorant.
-    fn rate(&self, segment: &Segment) -> f32;
+    /// The rate of tentative collisions μ̄ in a segment, at least its majorant. Asked for once in
+    /// each, from near to far; the walk's history may have a say in it.
+    fn rate(&mut self, segment: &Segment) -> f32;
 
     /// Crosses a uniform segment in closed form; false to be given its collisions instead.
     fn cross(&mut self, medium: &MediumRay, segment: &Segment, rng: &mut PathRng) -> bool;
@@ -125,7 +126,7 @@ pub fn transmittance(medium: MediumRay, rng: &mut PathRng) -> (Rgb, u32) {
         weight: Rgb,
     }
     impl Walk for Ratio {
-        fn rate(&self, segment: &Segment) -> f32 {
+        fn rate(&mut self, segment: &Segment) -> f32 {
             segment.majorant
         }
         fn cross(&mut self, medium: &MediumRay, segment: &Segment, _: &mut PathRng) -> bool {
@@ -239,7 +240,7 @@ struct Scattering {
 }
 
 impl Walk for Scattering {
-    fn rate(&self, segment: &Segment) -> f32 {
+    fn rate(&mut self, segment: &Segment) -> f32 {
         match self.gather {
             Gather::Nothing => segment.majorant,
             Gather::EveryCollision => self.majorant.rate(segment),

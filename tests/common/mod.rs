@@ -94,7 +94,7 @@ const SIDE: u32 = 64;
 /// The mean over the whole film of what `of` takes from each path, and its variance as the film's
 /// accumulators tell it, which holds for samples that depend on each other too.
 pub fn measure_with(scene: &Scene, paths: u32, of: impl Fn(&PathSample) -> Rgb + Sync) -> Estimate {
-    let frame = Frame { scene: Arc::new(scene.clone()), size: UVec2::splat(SIDE), seed: seed() };
+    let frame = Frame::new(Arc::new(scene.clone()), UVec2::splat(SIDE), seed());
     let samples = paths.div_ceil(SIDE * SIDE).max(2);
     let rows: Vec<Estimate> = (0..SIDE)
         .into_par_iter()

@@ -1,0 +1,173 @@
+//! How often the optimal majorant looks: k from measured variance and steps.
+//!
+//! At k looks along the brightest chord a sample has a variance of about A + B/k and takes about
+//! C + S k steps. The product of the two is least at k = √(B C / (A S)). All four are measured on a
+//! few camera rays before the first sample, with random numbers that no picture uses and costs
+//! counted in steps, so that the same scene on the same film always gets the same k.
+
+use glam::{UVec2, Vec2};
+
+use super::{
+    emission::{Errand, Gatherer},
+    observer::Nobody,
+    path,
+    scene::Scene,
+};
+use crate::{
+    math::{PathRng, Ray, luminance},
+    surface,
+};
+
+/// Pixels with something that glows in them that are measured at most.
+const MOST_SITES: u32 = 192;
+/// Pixels that are searched for it at most.
+const MOST_SEARCHED: u32 = 4096;
+/// Steps after which the measurement makes do with what it has; a segment searched counts as one.
+const MOST_STEPS: u32 = 1 << 17;
+/// The looks that are tried.
+const TRIED: [f32; 2] = [32.0, 256.0];
+/// What a path costs beside its steps, counted in them. Measured: 5 for a camera ray that meets a
+/// fire or nothing, 40 with a few vertices.
+const PATH_COST: f64 = 8.0;
+/// Looks where nothing could be measured.
+const UNMEASURED: f32 = 32.0;
+/// Looks whose steps cost this many times as much as all else gain next to nothing any more.
+const DEAREST: f64 = 8.0;
+/// The range of the answer.
+const RANGE: [f64; 2] = [1.0, 4096.0];
+/// Fixed, and like the samples it is used with none that a picture is likely to have.
+const SEED: u64 = 0x6f70_7469_6d61_6c21;
+
+/// The k that lowers variance times cost most for camera rays of `scene` on a film of `size`.
+pub(super) fn looks(scene: &Scene, size: UVec2) -> f32 {
+    let emits = scene.world.instances().iter().any(|i| i.volume().chords().max_element() > 0.0);
+    if !emits || size.min_element() == 0 {
+        return UNMEASURED;
+    }
+    measure(scene, size).optimum().unwrap_or(UNMEASURED)
+}
+
+/// Sums over the sites.
+#[derive(Clone, Copy, Debug, Default)]
+struct Measured {
+    searched: u32,
+    sites: u32,
+    /// Variance of the walk along one ray at each of [`TRIED`].
+    walk_variance: [f64; 2],
+    /// Its steps.
+    walk_steps: [f64; 2],
+    /// Variance of whole samples of a pixel at the last of [`TRIED`].
+    path_variance: f64,
+    /// Their steps.
+    path_steps: f64,
+    /// Steps spent on all of it.
+    spent: u32,
+}
+
+fn measure(scene: &Scene, size: UVec2) -> Measured {
+    let mut sums = Measured::default();
+    while sums.sites < MOST_SITES && sums.searched < MOST_SEARCHED && sums.spent < MOST_STEPS {
+        let site = Site::new(scene, size, sums.searched);
+        sums.searched += 1;
+        if site.glows(&mut sums.spent) {
+            sums.add(&site);
+        }
+    }
+    sums
+}
+
+impl Measured {
+    fn add(&mut self, site: &Site) {
+        self.sites += 1;
+        for (i, &looks) in TRIED.iter().enumerate() {
+            let [a, b] = [0, 1].map(|walk| site.walk(looks, 2 * i as u32 + walk));
+            self.walk_variance[i] += half_square(a.0 - b.0);
+            self.walk_steps[i] += 0.5 * (f64::from(a.1) + f64::from(b.1));
+            self.spent = self.spent.saturating_add(a.1).saturating_add(b.1);
+        }
+        let [a, b] = [0, 1].map(|path| site.path(TRIED[1], path));
+        self.path_variance += half_square(a.0 - b.0);
+        self.path_steps += 0.5 * (f64::from(a.1) + f64::from(b.1));
+        self.spent = self.spent.saturating_add(a.1).saturating_add(b.1);
+    }
+
+    /// `None` where the looks made no measurable difference.
+    fn optimum(&self) -> Option<f32> {
+        let [few, many] = TRIED.map(f64::from);
+        let sites = f64::from(self.sites);
+        let per_look = (self.walk_steps[1] - self.walk_steps[0]) / (many - few);
+        let unboosted = (self.walk_steps[0] - per_look * few).max(0.0);
+        let others = self.path_steps - self.walk_steps[1];
+        // The pixels that nothing glows in cost something as well.
+        let cost = PATH_COST * f64::from(self.searched) + (others + unboosted).max(0.0);
+        let drop = (self.walk_variance[0] - self.walk_variance[1]) / (1.0 / few - 1.0 / many);
+        if !(sites > 0.0 && per_look > 0.0 && drop > 0.0 && drop.is_finite()) {
+            return None;
+        }
+        let left = |variance: f64| (variance - drop / many).max(0.0);
+        let rest = left(self.path_variance).max(left(self.walk_variance[1]));
+        let dearest = DEAREST * cost / per_look;
+        let best = (drop * cost / (rest * per_look)).sqrt().min(dearest);
+        best.is_finite().then(|| best.clamp(RANGE[0], RANGE[1]) as f32)
+    }
+}
+
+fn half_square(difference: f64) -> f64 {
+    0.5 * difference * difference
+}
+
+/// A pixel and two rays through it.
+struct Site<'s> {
+    scene: &'s Scene,
+    pixel: UVec2,
+    rays: [Ray; 2],
+}
+
+impl<'s> Site<'s> {
+    /// Number `index` of a sequence that covers the film evenly (Roberts 2018, R₂).
+    fn new(scene: &'s Scene, size: UVec2, index: u32) -> Self {
+        const STEP: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_2];
+        let place = STEP.map(|step| (0.5 + step * f64::from(index)).fract() as f32);
+        let pixel = (Vec2::from_array(place) * size.as_vec2()).as_uvec2().min(size - UVec2::ONE);
+        let mut rng = PathRng::new(SEED, pixel, u32::MAX);
+        let rays = [(); 2].map(|()| {
+            let offset = Vec2::new(rng.uniform(), rng.uniform());
+            scene.camera.ray(size, pixel, offset)
+        });
+        Self { scene, pixel, rays }
+    }
+
+    fn end(&self) -> f32 {
+        surface::intersect(&self.scene.surfaces, &self.rays[0])
+            .map_or(f32::INFINITY, |end| end.hit.t)
+    }
+
+    /// Whether the first ray meets anything that may glow; adds the segments it took to know.
+    fn glows(&self, spent: &mut u32) -> bool {
+        let mut medium = self.scene.world.along(self.rays[0], self.end());
+        while let Some(segment) = medium.next_segment() {
+            *spent += 1;
+            if segment.emission_rate > 0.0 {
+                return true;
+            }
+        }
+        false
+    }
+
+    /// The emission that walk `number` gathers along the first ray, and its steps.
+    fn walk(&self, looks: f32, number: u32) -> (f64, u32) {
+        let medium = self.scene.world.along(self.rays[0], self.end());
+        let mut rng = PathRng::new(SEED, self.pixel, u32::MAX - 1 - number);
+        let glow = Gatherer::optimal(looks).gather(medium, Errand::Camera, &mut rng);
+        (f64::from(luminance(glow.emission)), glow.collisions)
+    }
+
+    /// What a path along ray `number` brings, and its steps.
+    fn path(&self, looks: f32, number: u32) -> (f64, u32) {
+        let mut rng = PathRng::new(SEED, self.pixel, u32::MAX - 8 - number);
+        let gatherer = Gatherer::optimal(looks);
+        let ray = self.rays[number as usize];
+        let sample = path::trace(self.scene, &gatherer, ray, &mut rng, &mut Nobody);
+        (f64::from(luminance(sample.beauty())), sample.tracking_steps)
+    }
+}
