@@ -5,7 +5,10 @@ mod common;
 use common::{
     Estimate, Verdicts, all_strategies, build, measure, measure_with, name, with_strategy,
 };
-use flambeau::math::Rgb;
+use flambeau::{
+    math::Rgb,
+    transport::strategy::{Advanced, BoostMode, Strategy},
+};
 
 /// A camera at z = −1 looking along +z at what lies above z = 0.
 const UPWARD: &str = r#"
@@ -143,6 +146,56 @@ fn emission_without_extinction() {
     in_every_combination(&varying, 3_000_000, |combination, estimate| {
         verdicts.check(&format!("ramp {combination}"), estimate, 0.5 * (0.5 * 4.0 + 8.0));
     });
+    verdicts.finish();
+}
+
+/// The optimal majorant depends on the walk's own weight and on what lies ahead, and changes
+/// nothing but the noise: at as many looks as it finds, at next to none and at very many.
+#[test]
+fn optimal_majorant() {
+    let ramp = |a: f64, b: f64, z: f64, rest: &str| {
+        format!(
+            r#"
+            [[volume]]
+            shape = "ramp"
+            half_size = [0.5, 0.5, 1]
+            translate = [0, 0, {z}]
+            axis = "z"
+            a = {a}
+            b = {b}
+            albedo = 0.0
+            {rest}
+            "#
+        )
+    };
+    let isothermal = "density = { scale = 1.0 }\nemission = { mode = \"source\", le = 1.0 }";
+    let fire = ramp(
+        0.5,
+        1.0,
+        3.0,
+        "density = { scale = 0.0 }\nemission = { mode = \"grid\", scale = 1.0 }",
+    );
+    let smoke = ramp(0.5, 1.0, 1.0, "density = { scale = [0.5, 1.0, 1.5] }");
+    let cases = [
+        ("thin", ramp(0.2, 0.3, 1.0, isothermal), [1.0 - (-1.0_f64).exp(); 3]),
+        ("thick", ramp(4.0, 12.0, 1.0, isothermal), [1.0; 3]),
+        ("without extinction", fire.clone(), [3.0; 3]),
+        ("behind colored smoke", smoke + &fire, [1.5, 3.0, 4.5_f64].map(|tau| 3.0 * (-tau).exp())),
+    ];
+    let mut verdicts = Verdicts::default();
+    for (case, volumes, expected) in cases {
+        let scene = build(&format!("{UPWARD}{volumes}"));
+        for boost_amount in [1.0, 32.0, 300.0] {
+            let advanced =
+                Advanced { boost_mode: BoostMode::Optimal, boost_amount, ..Advanced::default() };
+            let strategy = Strategy { advanced, ..Strategy::default() };
+            let estimate = measure(&with_strategy(&scene, strategy), 300_000);
+            for (channel, expected) in expected.into_iter().enumerate() {
+                let label = format!("{case}, channel {channel}, amount {boost_amount}");
+                verdicts.check_channel(&label, &estimate, channel, expected);
+            }
+        }
+    }
     verdicts.finish();
 }
 

@@ -6,13 +6,15 @@ use std::sync::Arc;
 
 use common::build;
 use flambeau::transport::{
-    Frame, PathSample, PixelSampler, strategy::Preset, tracking::MOST_COLLISIONS,
+    Frame, PathSample, PixelSampler,
+    strategy::{BoostMode, Preset, Strategy},
+    tracking::MOST_COLLISIONS,
 };
 use glam::UVec2;
 
 /// Samples a small picture and returns its paths.
-fn paths(text: &str, preset: Preset) -> Vec<PathSample> {
-    let scene = common::with_strategy(&build(text), preset.strategy());
+fn paths(text: &str, strategy: Strategy) -> Vec<PathSample> {
+    let scene = common::with_strategy(&build(text), strategy);
     let size = UVec2::splat(6);
     let frame = Frame::new(Arc::new(scene), size, 0);
     (0..size.x * size.y).map(|i| frame.sample(UVec2::new(i % size.x, i / size.x), 0)).collect()
@@ -39,7 +41,7 @@ fn enormous_densities_end() {
     let mut cut = 0;
     for scale in ["1e9", "1e12", "1e30", "3e38"] {
         for preset in Preset::ALL {
-            for path in paths(&format!("{NOISE}density.scale = {scale}\n"), preset) {
+            for path in paths(&format!("{NOISE}density.scale = {scale}\n"), preset.strategy()) {
                 assert!(path.tracking_steps <= 2 * MOST_COLLISIONS, "{scale} {preset}");
                 let is_long = path.tracking_steps >= 2 * MOST_COLLISIONS;
                 assert!(path.guard_hit || !is_long, "{scale} {preset}");
@@ -64,8 +66,29 @@ fn tiny_bright_sparks_cost_little() {
             [0.0, 1e-20, 1e-20, 1e-20], [0.97, 1e-20, 1e-20, 1e-20], [1.0, 1.0, 1.0, 1.0]] }
     "#;
     for preset in Preset::ALL {
-        let steps: u32 = paths(text, preset).iter().map(|path| path.tracking_steps).sum();
+        let steps: u32 =
+            paths(text, preset.strategy()).iter().map(|path| path.tracking_steps).sum();
         assert!(steps < 36 * 1000, "{preset}: {steps}");
+    }
+}
+
+/// The optimal majorant measures what it meets first, and heeds the weight of a walk that dense or
+/// blinding matter leaves nothing of.
+#[test]
+fn the_optimal_majorant_takes_whatever_comes() {
+    let mut strategy = Strategy::default();
+    strategy.advanced.boost_mode = BoostMode::Optimal;
+    for le in ["1e30", "1.0", "1e-30"] {
+        for density in ["0.0", "1e-30", "1.0", "1e9", "3e38"] {
+            let text = format!(
+                "{NOISE}density.scale = {density}\nemission = {{ mode = \"source\", le = {le} }}\n"
+            );
+            for path in paths(&text, strategy) {
+                let named = || format!("le {le}, density {density}: {path:?}");
+                assert!(path.tracking_steps <= 2 * MOST_COLLISIONS, "{}", named());
+                assert!(path.beauty().is_finite() || path.guard_hit, "{}", named());
+            }
+        }
     }
 }
 
@@ -82,7 +105,7 @@ fn placements_that_cannot_be_undone_are_refused_by_name() {
         if let Err(error) = result {
             assert!(error.to_string().contains("volume.0.scale"), "{error}");
         } else {
-            for path in paths(&text, Preset::Full) {
+            for path in paths(&text, Preset::Full.strategy()) {
                 assert!(path.beauty().is_finite(), "{scale}");
             }
         }

@@ -5,7 +5,10 @@ mod common;
 use std::sync::Arc;
 
 use common::{Z_LIMIT, all_strategies, build, name, seed, shared, with_strategy};
-use flambeau::transport::{Frame, PixelSampler, Scene};
+use flambeau::transport::{
+    Frame, PixelSampler, Scene,
+    strategy::{BoostMode, Strategy},
+};
 use glam::UVec2;
 use rayon::prelude::*;
 
@@ -67,7 +70,9 @@ fn fire_absorb_matches_its_exact_picture() {
         file.display()
     ));
     let mut failures = Vec::new();
-    for strategy in all_strategies() {
+    let mut optimal = Strategy::default();
+    optimal.advanced.boost_mode = BoostMode::Optimal;
+    for strategy in all_strategies().into_iter().chain([optimal]) {
         // Samples that bring the picture's standard error to 0.4 %, by how much each brings.
         let samples = match (
             strategy.emission_ratio_tracking || strategy.emission_decoupling,
@@ -78,7 +83,10 @@ fn fire_absorb_matches_its_exact_picture() {
             (false, _) => 2048,
         };
         let sums = gray_sums(&with_strategy(&scene, strategy), samples);
-        let name = name(&strategy);
+        let mut name = name(&strategy);
+        if strategy.advanced.boost_mode == BoostMode::Optimal {
+            name += ", optimal";
+        }
         compare(&name, &sums, &exact, samples, &mut failures);
     }
     assert!(failures.is_empty(), "{}", failures.join("\n"));

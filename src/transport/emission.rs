@@ -72,21 +72,20 @@ impl Gatherer {
     /// For a picture of `size` pixels. The optimal majorant takes a few milliseconds to find out
     /// how often to look; nothing else is measured.
     pub fn new(scene: &Scene, size: UVec2) -> Self {
-        let Strategy { majorant_boost, emission_ratio_tracking, advanced, .. } = scene.strategy;
-        Self(match advanced.boost_mode {
-            BoostMode::Stratified if majorant_boost => Kind::Stratified(advanced.boost_amount),
-            BoostMode::Optimal if majorant_boost && advanced.boost_amount == 0.0 => {
-                Kind::Optimal(0.0)
-            }
-            // Looks at lights alone are not measured either: there is nothing like them in view.
-            BoostMode::Optimal if majorant_boost && !emission_ratio_tracking => {
-                Kind::Optimal(advanced.boost_amount)
-            }
-            BoostMode::Optimal if majorant_boost => {
-                let scale = advanced.boost_amount / Advanced::default().boost_amount;
+        let strategy = &scene.strategy;
+        let amount = strategy.advanced.boost_amount;
+        Self(match strategy.advanced.boost_mode {
+            _ if !strategy.majorant_boost => Kind::RatioTracking(EmissionMajorant::of(strategy)),
+            BoostMode::Stratified => Kind::Stratified(amount),
+            // The looks along camera rays are what is measured; without them, none.
+            BoostMode::Optimal if strategy.emission_ratio_tracking && amount > 0.0 => {
+                let scale = amount / Advanced::default().boost_amount;
                 Kind::Optimal(scale * tuning::looks(scene, size))
             }
-            _ => Kind::RatioTracking(EmissionMajorant::of(&scene.strategy)),
+            BoostMode::Optimal => Kind::Optimal(amount),
+            BoostMode::Clamped | BoostMode::Literal => {
+                Kind::RatioTracking(EmissionMajorant::of(strategy))
+            }
         })
     }
 

@@ -40,10 +40,6 @@ const SEED: u64 = 0x6f70_7469_6d61_6c21;
 
 /// The k that lowers variance times cost most for camera rays of `scene` on a film of `size`.
 pub(super) fn looks(scene: &Scene, size: UVec2) -> f32 {
-    let emits = scene.world.instances().iter().any(|i| i.volume().chords().max_element() > 0.0);
-    if !emits || size.min_element() == 0 {
-        return UNMEASURED;
-    }
     measure(scene, size).optimum().unwrap_or(UNMEASURED)
 }
 
@@ -66,6 +62,10 @@ struct Measured {
 
 fn measure(scene: &Scene, size: UVec2) -> Measured {
     let mut sums = Measured::default();
+    let emits = scene.world.instances().iter().any(|i| i.volume().chords().max_element() > 0.0);
+    if !emits || size.min_element() == 0 {
+        return sums;
+    }
     while sums.sites < MOST_SITES && sums.searched < MOST_SEARCHED && sums.spent < MOST_STEPS {
         let site = Site::new(scene, size, sums.searched);
         sums.searched += 1;
@@ -169,5 +169,149 @@ impl<'s> Site<'s> {
         let ray = self.rays[number as usize];
         let sample = path::trace(self.scene, &gatherer, ray, &mut rng, &mut Nobody);
         (f64::from(luminance(sample.beauty())), sample.tracking_steps)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::{
+        error::NO_PROGRESS,
+        scene::{self, Overrides, VolumeCache},
+    };
+
+    const SIZE: UVec2 = UVec2::new(24, 24);
+
+    const CAMERA: &str = r#"
+        [camera]
+        position = [0, -4, 0]
+        target = [0, 0, 0]
+        fov_x = 40
+    "#;
+
+    const FIRE: &str = r#"
+        [[volume]]
+        shape = "noise"
+        half_size = 0.8
+        frequency = 2.0
+        contrast = 3.0
+        density = { scale = 0.5 }
+        albedo = 0.0
+        emission = { mode = "source", le = [3.0, 1.0, 0.2] }
+    "#;
+
+    const SMOKE: &str = r#"
+        [[volume]]
+        shape = "noise"
+        half_size = [1.0, 0.3, 1.0]
+        translate = [0, -1.5, 0]
+        frequency = 2.0
+        density = { scale = 8.0 }
+        albedo = 0.0
+    "#;
+
+    fn build(text: &str) -> Scene {
+        let settings = scene::parse(text, "test", Path::new("."), &Overrides::default()).unwrap();
+        scene::build(&settings, &VolumeCache::default(), NO_PROGRESS).unwrap()
+    }
+
+    /// Variance of independent samples times their cost, over the whole film.
+    fn variance_times_cost(scene: &Scene, looks: f32) -> f64 {
+        const SAMPLES: u32 = 96;
+        let gatherer = Gatherer::optimal(looks);
+        let (mut variance, mut steps) = (0.0, 0.0);
+        for i in 0..SIZE.element_product() {
+            let pixel = UVec2::new(i % SIZE.x, i / SIZE.x);
+            let (mut sum, mut squares) = (0.0, 0.0);
+            for sample in 0..SAMPLES {
+                let mut rng = PathRng::new(0, pixel, sample);
+                let offset = Vec2::new(rng.uniform(), rng.uniform());
+                let ray = scene.camera.ray(SIZE, pixel, offset);
+                let sample = path::trace(scene, &gatherer, ray, &mut rng, &mut Nobody);
+                let value = f64::from(luminance(sample.beauty()));
+                (sum, squares) = (sum + value, squares + value * value);
+                steps += f64::from(sample.tracking_steps);
+            }
+            variance += squares - sum * sum / f64::from(SAMPLES);
+        }
+        let paths = f64::from(SIZE.element_product() * SAMPLES);
+        variance * (PATH_COST + steps / paths)
+    }
+
+    /// Of 1/16 to 16 times what was found none is better by more than a quarter, while the worst of
+    /// them is worse by far.
+    #[test]
+    fn nothing_much_better_is_found_by_trying() {
+        for (name, text) in [
+            ("fire", format!("{CAMERA}{FIRE}")),
+            ("fire behind smoke", format!("{CAMERA}{FIRE}{SMOKE}")),
+        ] {
+            let scene = build(&text);
+            let found = looks(&scene, SIZE);
+            let all = [1.0 / 16.0, 0.25, 0.5, 1.0, 2.0, 4.0, 16.0]
+                .map(|scale| variance_times_cost(&scene, scale * found));
+            println!("{name}: {found}: {all:?}");
+            let best = all.into_iter().fold(f64::INFINITY, f64::min);
+            let worst = all.into_iter().fold(0.0, f64::max);
+            assert!(all[3] < 1.25 * best, "{name}: {found} gives {all:?}");
+            assert!(worst > 2.0 * best, "{name}: the scan shows nothing: {all:?}");
+        }
+    }
+
+    #[test]
+    fn whoever_measures_finds_the_same() {
+        let text = format!("{CAMERA}{FIRE}{SMOKE}");
+        let found = looks(&build(&text), SIZE);
+        let threads: Vec<_> = (0..3)
+            .map(|_| {
+                let text = text.clone();
+                std::thread::spawn(move || looks(&build(&text), SIZE))
+            })
+            .collect();
+        for thread in threads {
+            assert_eq!(thread.join().unwrap(), found);
+        }
+        assert_ne!(found, UNMEASURED);
+    }
+
+    /// A step or a segment takes some ten nanoseconds.
+    #[test]
+    fn measuring_costs_milliseconds_at_most() {
+        let measured = measure(&build(&format!("{CAMERA}{FIRE}{SMOKE}")), SIZE);
+        assert!(measured.sites > 50 && measured.spent < 2 * MOST_STEPS, "{measured:?}");
+
+        let dark = build(&format!("{CAMERA}{SMOKE}"));
+        assert_eq!(measure(&dark, SIZE).searched, 0);
+        assert_eq!(looks(&dark, SIZE), UNMEASURED);
+
+        let away = CAMERA.replace("[0, 0, 0]", "[0, -8, 0]");
+        let unseen = build(&format!("{away}{FIRE}{SMOKE}"));
+        let measured = measure(&unseen, SIZE);
+        assert!(measured.sites == 0 && measured.spent == 0, "{measured:?}");
+        assert_eq!(looks(&unseen, SIZE), UNMEASURED);
+
+        // Smoke fills the view and hides nothing that glows.
+        let beside = FIRE.replace("[[volume]]", "[[volume]]\ntranslate = [0, -9, 0]");
+        let hidden = build(&format!("{CAMERA}{beside}{SMOKE}"));
+        let measured = measure(&hidden, SIZE);
+        assert!(measured.sites == 0 && measured.spent < 2 * MOST_STEPS, "{measured:?}");
+    }
+
+    /// What is measured of light that cannot be squared or that is next to nothing still gives a
+    /// number to go on with.
+    #[test]
+    fn whatever_glows_gives_a_number_of_looks() {
+        for le in ["3e38", "1e30", "1e-30", "1e-44"] {
+            for density in ["1e-30", "0.5", "1e9", "1e30"] {
+                let fire = FIRE
+                    .replace("[3.0, 1.0, 0.2]", le)
+                    .replace("scale = 0.5", &format!("scale = {density}"));
+                let scene = build(&format!("{CAMERA}{fire}"));
+                let looks = looks(&scene, UVec2::splat(4));
+                assert!((1.0..=4096.0).contains(&looks), "le {le}, density {density}: {looks}");
+            }
+        }
     }
 }
