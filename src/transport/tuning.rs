@@ -219,7 +219,7 @@ mod tests {
 
     /// Variance of independent samples times their cost, over the whole film.
     fn variance_times_cost(scene: &Scene, looks: f32) -> f64 {
-        const SAMPLES: u32 = 96;
+        const SAMPLES: u32 = 64;
         let gatherer = Gatherer::optimal(looks);
         let (mut variance, mut steps) = (0.0, 0.0);
         for i in 0..SIZE.element_product() {
@@ -240,7 +240,7 @@ mod tests {
         variance * (PATH_COST + steps / paths)
     }
 
-    /// Of 1/16 to 16 times what was found none is better by more than a quarter, while the worst of
+    /// Of 1/16 to 4 times what was found none is better by more than a quarter, while the worst of
     /// them is worse by far.
     #[test]
     fn nothing_much_better_is_found_by_trying() {
@@ -250,9 +250,8 @@ mod tests {
         ] {
             let scene = build(&text);
             let found = looks(&scene, SIZE);
-            let all = [1.0 / 16.0, 0.25, 0.5, 1.0, 2.0, 4.0, 16.0]
+            let all = [1.0 / 16.0, 0.25, 0.5, 1.0, 2.0, 4.0]
                 .map(|scale| variance_times_cost(&scene, scale * found));
-            println!("{name}: {found}: {all:?}");
             let best = all.into_iter().fold(f64::INFINITY, f64::min);
             let worst = all.into_iter().fold(0.0, f64::max);
             assert!(all[3] < 1.25 * best, "{name}: {found} gives {all:?}");
