@@ -86,7 +86,10 @@ fn the_optimal_majorant_takes_whatever_comes() {
             for path in paths(&text, strategy) {
                 let named = || format!("le {le}, density {density}: {path:?}");
                 assert!(path.tracking_steps <= 2 * MOST_COLLISIONS, "{}", named());
-                assert!(path.beauty().is_finite() || path.guard_hit, "{}", named());
+                // The product of the two is emitted; beyond single precision it has no number.
+                let has_number =
+                    le.parse::<f64>().unwrap() * density.parse::<f64>().unwrap() < 1e38;
+                assert!(path.beauty().is_finite() || !has_number, "{}", named());
             }
         }
     }
