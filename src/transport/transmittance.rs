@@ -117,7 +117,8 @@ impl Transmittance {
                 self.depth_left -= depth;
                 return ControlFlow::Continue(());
             }
-            let block_end = (t + self.depth_left / majorant).min(end);
+            // However short the block, the way goes on.
+            let block_end = (t + self.depth_left / majorant).max(t.next_up()).min(end);
             self.read(medium, majorant, t, block_end);
             self.end_block(rng)?;
             t = block_end;
