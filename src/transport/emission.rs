@@ -81,7 +81,7 @@ fn by_ratio_tracking(medium: MediumRay, strategy: &Strategy, rng: &mut PathRng) 
     }
     let majorant = EmissionMajorant::of(strategy);
     let mut walk = EmissionRatio { majorant, weight: Rgb::ONE, emission: Rgb::ZERO };
-    let collisions = track(medium, rng, &mut walk);
+    let collisions = track(medium, rng.exponential(), rng, &mut walk);
     Glow { emission: walk.emission, transmittance: walk.weight, collisions }
 }
 

@@ -11,7 +11,7 @@ use std::ops::ControlFlow;
 
 use super::{emission::EmissionMajorant, strategy::Strategy};
 use crate::{
-    math::{PathRng, Rgb, mean},
+    math::{PathRng, Rgb, Slot, mean},
     volume::{
         medium::{Coefficients, Segment},
         phase::PhaseMix,
@@ -53,9 +53,15 @@ pub(super) struct Collision<'s> {
 
 /// Calls `walk` for each tentative collision along the medium, from near to far, and returns how
 /// many there were. A step that lands beyond the end of its segment is no collision.
-pub(super) fn track(mut medium: MediumRay, rng: &mut PathRng, walk: &mut impl Walk) -> u32 {
+///
+/// The first step is `optical_distance` long, which has density exp(-x).
+pub(super) fn track(
+    mut medium: MediumRay,
+    mut optical_distance: f32,
+    rng: &mut PathRng,
+    walk: &mut impl Walk,
+) -> u32 {
     let mut collisions = 0;
-    let mut optical_distance = rng.exponential();
     while let Some(segment) = medium.next_segment() {
         if segment.uniform && walk.cross(&medium, &segment, rng) {
             continue;
@@ -144,7 +150,7 @@ pub fn transmittance(medium: MediumRay, rng: &mut PathRng) -> (Rgb, u32) {
         }
     }
     let mut walk = Ratio { weight: Rgb::ONE };
-    let collisions = track(medium, rng, &mut walk);
+    let collisions = track(medium, rng.exponential(), rng, &mut walk);
     (walk.weight, collisions)
 }
 
@@ -209,6 +215,11 @@ pub struct Flight {
 /// The scattering walk: at each tentative collision one of absorption, scattering and null is
 /// chosen with P ∝ the channels' mean of w·μ, so that the throughput stays near one color and the
 /// factors μ/(μ̄ P) near 1 (Kutz et al. 2017, section 5.1, history-aware probabilities).
+///
+/// That is spectral MIS in closed form: with f_c what the path so far brings to channel c, which
+/// is also how likely that channel's own analog walk is to take it, the probabilities make the
+/// path's density the mean of f over the channels, and its weight f_c / mean f (Miller et al.
+/// 2019, section 6).
 pub fn scatter(
     medium: MediumRay,
     strategy: &Strategy,
@@ -224,7 +235,7 @@ pub fn scatter(
         emission: Rgb::ZERO,
         event: Event::Reached,
     };
-    let collisions = track(medium, rng, &mut walk);
+    let collisions = track(medium, rng.exponential_at(Slot::Distance), rng, &mut walk);
     Flight { event: walk.event, weight: walk.weight, emission: walk.emission, collisions }
 }
 
@@ -280,6 +291,9 @@ impl Walk for Scattering {
         at: &Collision,
         rng: &mut PathRng,
     ) -> ControlFlow<()> {
+        if at.segment.gray && self.gather == Gather::Nothing {
+            return self.collide_gray(medium, at, rng);
+        }
         let &Collision { t, rate, .. } = at;
         let c = medium.coefficients(t);
         if self.gather == Gather::EveryCollision {
@@ -316,6 +330,28 @@ impl Walk for Scattering {
 }
 
 impl Scattering {
+    /// The same where all channels are: whatever the color, each event's probability is its share
+    /// of the collisions and the weight stays as it is.
+    fn collide_gray(
+        &mut self,
+        medium: &MediumRay,
+        at: &Collision,
+        rng: &mut PathRng,
+    ) -> ControlFlow<()> {
+        let (mu_t, mu_s) = medium.extinction(at.t);
+        let mu_n = (at.rate - mu_t.x).max(0.0);
+        let u = rng.uniform() * (mu_n + mu_t.x);
+        if u < mu_n {
+            return ControlFlow::Continue(());
+        }
+        self.event = if u < mu_n + mu_s.x {
+            Event::Scattered { t: at.t, phase: medium.phase(at.t) }
+        } else {
+            Event::Absorbed { t: at.t, real: true }
+        };
+        ControlFlow::Break(())
+    }
+
     /// μ_a, or where absorption alone shows the emission, enough of it to show: ε may be positive
     /// with little or no μ_a. The other events make up for the share by their weights, so that
     /// the floor absorbs nothing by itself.
