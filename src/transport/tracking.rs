@@ -212,8 +212,8 @@ pub struct Flight {
     pub collisions: u32,
 }
 
-/// The scattering walk: at each tentative collision one of absorption, scattering and null is
-/// chosen with P ∝ the channels' mean of w·μ, so that the throughput stays near one color and the
+/// The scattering walk: at each tentative collision one of absorption, scattering and null (or,
+/// with the albedo in the weight, one of the latter two) is chosen with P ∝ the channels' mean of w·μ, so that the throughput stays near one color and the
 /// factors μ/(μ̄ P) near 1 (Kutz et al. 2017, section 5.1, history-aware probabilities).
 ///
 /// That is spectral MIS in closed form: with f_c what the path so far brings to channel c, which
@@ -300,9 +300,9 @@ impl Walk for Scattering {
             self.emission += self.weight * c.emission / rate;
         }
         let mu_n = null_coefficient(rate, c.mu_t);
-        let absorb = self.absorption_share(&c, at.segment);
+        let [absorb, scatter] = self.shares(&c, at.segment);
         let color = self.throughput * self.weight;
-        let [a, s, n] = [absorb, c.mu_s, mu_n].map(|mu| mean(color * mu));
+        let [a, s, n] = [absorb, scatter, mu_n].map(|mu| mean(color * mu));
         let total = a + s + n;
         if !(total > 0.0 && total.is_finite()) {
             // Nothing is left to follow; what is no number stays one and is counted.
@@ -315,23 +315,23 @@ impl Walk for Scattering {
             self.weight *= mu_n / rate * (total / n);
             return ControlFlow::Continue(());
         }
-        if u < n + s {
+        if u < n + s && c.mu_s != Rgb::ZERO {
             self.weight *= c.mu_s / rate * (total / s);
             self.event = Event::Scattered { t, phase: medium.phase(t) };
-        } else {
-            if self.gather == Gather::Absorption {
-                self.emission += self.weight * c.emission / rate * (total / a);
-            }
-            let real = u - n - s < mean(color * c.mu_a());
-            self.event = Event::Absorbed { t, real };
+            return ControlFlow::Break(());
         }
+        if self.gather == Gather::Absorption {
+            self.emission += self.weight * c.emission / rate * (total / a);
+        }
+        let real = u - n - s < mean(color * c.mu_a());
+        self.event = Event::Absorbed { t, real };
         ControlFlow::Break(())
     }
 }
 
 impl Scattering {
     /// The same where all channels are: whatever the color, each event's probability is its share
-    /// of the collisions and the weight stays as it is.
+    /// of the collisions, and the weight is the albedo.
     fn collide_gray(
         &mut self,
         medium: &MediumRay,
@@ -344,23 +344,32 @@ impl Scattering {
         if u < mu_n {
             return ControlFlow::Continue(());
         }
-        self.event = if u < mu_n + mu_s.x {
-            Event::Scattered { t: at.t, phase: medium.phase(at.t) }
+        if mu_s.x > 0.0 {
+            self.weight *= mu_s.x / mu_t.x;
+            self.event = Event::Scattered { t: at.t, phase: medium.phase(at.t) };
         } else {
-            Event::Absorbed { t: at.t, real: true }
-        };
+            self.event = Event::Absorbed { t: at.t, real: true };
+        }
         ControlFlow::Break(())
     }
 
-    /// μ_a, or where absorption alone shows the emission, enough of it to show: ε may be positive
-    /// with little or no μ_a. The other events make up for the share by their weights, so that
-    /// the floor absorbs nothing by itself.
-    fn absorption_share(&self, c: &Coefficients, segment: &Segment) -> Rgb {
+    /// Coefficients in whose proportion a collision is an absorption or a scattering event.
+    ///
+    /// Where absorption has nothing to show, a real collision always scatters, and the weight
+    /// carries the albedo: a path that lives on dimly beats one that mostly dies.
+    ///
+    /// Where absorption alone shows the emission, it happens as often as μ_a says, and often
+    /// enough to show it: ε may be positive with little or no μ_a. The other events make up for
+    /// that share by their weights, so that the floor absorbs nothing by itself.
+    fn shares(&self, c: &Coefficients, segment: &Segment) -> [Rgb; 2] {
+        if self.gather != Gather::Absorption {
+            return [Rgb::ZERO, c.mu_t];
+        }
         let mu_a = c.mu_a();
-        if self.gather == Gather::Absorption && c.emission.max_element() > 0.0 {
-            mu_a.max(Rgb::splat(EMISSION_FLOOR * segment.emission_rate))
+        if c.emission.max_element() > 0.0 {
+            [mu_a.max(Rgb::splat(EMISSION_FLOOR * segment.emission_rate)), c.mu_s]
         } else {
-            mu_a
+            [mu_a, c.mu_s]
         }
     }
 }

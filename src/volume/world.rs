@@ -7,15 +7,13 @@ mod emissive;
 
 use std::sync::Arc;
 
+use along::Entry;
+pub use along::MediumRay;
+use emissive::Emissive;
 use glam::{Affine3A, Vec3A};
 use smallvec::SmallVec;
-pub use along::MediumRay;
-use along::Entry;
-use emissive::Emissive;
 
-use super::{
-    body::{Region, Volume},
-};
+use super::body::{Region, Volume};
 use crate::math::{Aabb, Bvh, Ray, Rgb};
 
 /// Up to this many volumes are tried one by one, which costs less than a hierarchy.
