@@ -198,6 +198,12 @@ impl PathRng {
         -(1.0 - self.uniform()).ln()
     }
 
+    /// [`PathRng::exponential`] from the number for `slot`.
+    #[inline]
+    pub fn exponential_at(&mut self, slot: Slot) -> f32 {
+        -(1.0 - self.at(slot)).ln()
+    }
+
     #[inline]
     fn bits(&mut self) -> u32 {
         match self.random.try_next_u32() {

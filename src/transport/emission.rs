@@ -144,7 +144,7 @@ pub(super) fn by_rate(
         }
     }
     let mut walk = EmissionRatio { rate, weight: Rgb::ONE, emission: Rgb::ZERO };
-    let collisions = track(medium, rng, &mut walk);
+    let collisions = track(medium, rng.exponential(), rng, &mut walk);
     Glow { emission: walk.emission, transmittance: walk.weight, collisions }
 }
 

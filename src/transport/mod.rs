@@ -77,6 +77,11 @@ impl Frame {
         Self { scene, size, seed, gatherer }
     }
 
+    /// Pixels across and down.
+    pub fn size(&self) -> UVec2 {
+        self.size
+    }
+
     /// Follows one path and shows each of its steps to `observer`.
     pub fn trace(&self, pixel: UVec2, sample: u32, observer: &mut impl Observer) -> PathSample {
         let mut rng = if self.scene.strategy.advanced.low_discrepancy {

@@ -11,7 +11,7 @@ use std::ops::ControlFlow;
 
 use super::{emission::EmissionMajorant, strategy::Strategy};
 use crate::{
-    math::{PathRng, Rgb, mean},
+    math::{PathRng, Rgb, Slot, mean},
     volume::{
         medium::{Coefficients, Segment},
         phase::PhaseMix,
@@ -54,9 +54,15 @@ pub(super) struct Collision<'s> {
 
 /// Calls `walk` for each tentative collision along the medium, from near to far, and returns how
 /// many there were. A step that lands beyond the end of its segment is no collision.
-pub(super) fn track(mut medium: MediumRay, rng: &mut PathRng, walk: &mut impl Walk) -> u32 {
+///
+/// The first step is `optical_distance` long, which has density exp(-x).
+pub(super) fn track(
+    mut medium: MediumRay,
+    mut optical_distance: f32,
+    rng: &mut PathRng,
+    walk: &mut impl Walk,
+) -> u32 {
     let mut collisions = 0;
-    let mut optical_distance = rng.exponential();
     while let Some(segment) = medium.next_segment() {
         if segment.uniform && walk.cross(&medium, &segment, rng) {
             continue;
@@ -145,7 +151,7 @@ pub fn transmittance(medium: MediumRay, rng: &mut PathRng) -> (Rgb, u32) {
         }
     }
     let mut walk = Ratio { weight: Rgb::ONE };
-    let collisions = track(medium, rng, &mut walk);
+    let collisions = track(medium, rng.exponential(), rng, &mut walk);
     (walk.weight, collisions)
 }
 
@@ -207,9 +213,14 @@ pub struct Flight {
     pub collisions: u32,
 }
 
-/// The scattering walk: at each tentative collision one of absorption, scattering and null is
-/// chosen with P ∝ the channels' mean of w·μ, so that the throughput stays near one color and the
+/// The scattering walk: at each tentative collision one of absorption, scattering and null (or,
+/// with the albedo in the weight, one of the latter two) is chosen with P ∝ the channels' mean of w·μ, so that the throughput stays near one color and the
 /// factors μ/(μ̄ P) near 1 (Kutz et al. 2017, section 5.1, history-aware probabilities).
+///
+/// That is spectral MIS in closed form: with f_c what the path so far brings to channel c, which
+/// is also how likely that channel's own analog walk is to take it, the probabilities make the
+/// path's density the mean of f over the channels, and its weight f_c / mean f (Miller et al.
+/// 2019, section 6).
 pub fn scatter(
     medium: MediumRay,
     strategy: &Strategy,
@@ -225,7 +236,7 @@ pub fn scatter(
         emission: Rgb::ZERO,
         event: Event::Reached,
     };
-    let collisions = track(medium, rng, &mut walk);
+    let collisions = track(medium, rng.exponential_at(Slot::Distance), rng, &mut walk);
     Flight { event: walk.event, weight: walk.weight, emission: walk.emission, collisions }
 }
 
@@ -281,15 +292,18 @@ impl Walk for Scattering {
         at: &Collision,
         rng: &mut PathRng,
     ) -> ControlFlow<()> {
+        if at.segment.gray && self.gather == Gather::Nothing {
+            return self.collide_gray(medium, at, rng);
+        }
         let &Collision { t, rate, .. } = at;
         let c = medium.coefficients(t);
         if self.gather == Gather::EveryCollision {
             self.emission += self.weight * c.emission / rate;
         }
         let mu_n = null_coefficient(rate, c.mu_t);
-        let absorb = self.absorption_share(&c, at.segment);
+        let [absorb, scatter] = self.shares(&c, at.segment);
         let color = self.throughput * self.weight;
-        let [a, s, n] = [absorb, c.mu_s, mu_n].map(|mu| mean(color * mu));
+        let [a, s, n] = [absorb, scatter, mu_n].map(|mu| mean(color * mu));
         let total = a + s + n;
         if !(total > 0.0 && total.is_finite()) {
             // Nothing is left to follow; what is no number stays one and is counted.
@@ -302,30 +316,61 @@ impl Walk for Scattering {
             self.weight *= mu_n / rate * (total / n);
             return ControlFlow::Continue(());
         }
-        if u < n + s {
+        if u < n + s && c.mu_s != Rgb::ZERO {
             self.weight *= c.mu_s / rate * (total / s);
             self.event = Event::Scattered { t, phase: medium.phase(t) };
-        } else {
-            if self.gather == Gather::Absorption {
-                self.emission += self.weight * c.emission / rate * (total / a);
-            }
-            let real = u - n - s < mean(color * c.mu_a());
-            self.event = Event::Absorbed { t, real };
+            return ControlFlow::Break(());
         }
+        if self.gather == Gather::Absorption {
+            self.emission += self.weight * c.emission / rate * (total / a);
+        }
+        let real = u - n - s < mean(color * c.mu_a());
+        self.event = Event::Absorbed { t, real };
         ControlFlow::Break(())
     }
 }
 
 impl Scattering {
-    /// μ_a, or where absorption alone shows the emission, enough of it to show: ε may be positive
-    /// with little or no μ_a. The other events make up for the share by their weights, so that
-    /// the floor absorbs nothing by itself.
-    fn absorption_share(&self, c: &Coefficients, segment: &Segment) -> Rgb {
-        let mu_a = c.mu_a();
-        if self.gather == Gather::Absorption && c.emission.max_element() > 0.0 {
-            mu_a.max(Rgb::splat(EMISSION_FLOOR * segment.emission_rate))
+    /// The same where all channels are: whatever the color, each event's probability is its share
+    /// of the collisions, and the weight is the albedo.
+    fn collide_gray(
+        &mut self,
+        medium: &MediumRay,
+        at: &Collision,
+        rng: &mut PathRng,
+    ) -> ControlFlow<()> {
+        let (mu_t, mu_s) = medium.extinction(at.t);
+        let mu_n = (at.rate - mu_t.x).max(0.0);
+        let u = rng.uniform() * (mu_n + mu_t.x);
+        if u < mu_n {
+            return ControlFlow::Continue(());
+        }
+        if mu_s.x > 0.0 {
+            self.weight *= mu_s.x / mu_t.x;
+            self.event = Event::Scattered { t: at.t, phase: medium.phase(at.t) };
         } else {
-            mu_a
+            self.event = Event::Absorbed { t: at.t, real: true };
+        }
+        ControlFlow::Break(())
+    }
+
+    /// Coefficients in whose proportion a collision is an absorption or a scattering event.
+    ///
+    /// Where absorption has nothing to show, a real collision always scatters, and the weight
+    /// carries the albedo: a path that lives on dimly beats one that mostly dies.
+    ///
+    /// Where absorption alone shows the emission, it happens as often as μ_a says, and often
+    /// enough to show it: ε may be positive with little or no μ_a. The other events make up for
+    /// that share by their weights, so that the floor absorbs nothing by itself.
+    fn shares(&self, c: &Coefficients, segment: &Segment) -> [Rgb; 2] {
+        if self.gather != Gather::Absorption {
+            return [Rgb::ZERO, c.mu_t];
+        }
+        let mu_a = c.mu_a();
+        if c.emission.max_element() > 0.0 {
+            [mu_a.max(Rgb::splat(EMISSION_FLOOR * segment.emission_rate)), c.mu_s]
+        } else {
+            [mu_a, c.mu_s]
         }
     }
 }

@@ -82,10 +82,23 @@ impl Substance {
         Coefficients { mu_t, mu_s, emission }
     }
 
+    /// Whether μ_t and μ_s are the same in all channels, whatever the emission.
+    #[inline]
+    pub fn is_gray(&self) -> bool {
+        self.density_scale == Rgb::splat(self.density_scale.x) && self.albedo.is_gray()
+    }
+
     /// μ_t alone at a point of the volume's space.
     #[inline]
     pub fn mu_t(&self, local: Vec3A) -> Rgb {
         self.density_scale * self.density.at(local).max(0.0)
+    }
+
+    /// μ_t and μ_s alone at a point of the volume's space.
+    #[inline]
+    pub fn extinction(&self, local: Vec3A) -> (Rgb, Rgb) {
+        let mu_t = self.mu_t(local);
+        (mu_t, self.albedo.at(local).clamp(Rgb::ZERO, Rgb::ONE) * mu_t)
     }
 
     /// ε alone at a point of the volume's space.

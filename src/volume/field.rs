@@ -125,6 +125,15 @@ impl RgbField {
         }
     }
 
+    /// Whether all channels are the same everywhere, as far as can be told without looking.
+    #[inline]
+    pub fn is_gray(&self) -> bool {
+        match self {
+            Self::Constant(value) | Self::Tinted(_, value) => *value == Rgb::splat(value.x),
+            Self::Grid(_) => false,
+        }
+    }
+
     /// Upper bounds of the channels over a box.
     pub fn upper_bound(&self, local: &Aabb) -> Rgb {
         match self {

@@ -39,4 +39,6 @@ pub struct Segment {
     pub voxel_rate: f32,
     /// Whether the coefficients are the same all along it.
     pub uniform: bool,
+    /// Whether μ_t and μ_s are the same in all channels.
+    pub gray: bool,
 }

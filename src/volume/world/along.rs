@@ -1,0 +1,306 @@
+//! The medium along one ray: every volume it enters, each with its own cells, merged into segments
+//! from near to far.
+
+use smallvec::SmallVec;
+
+use super::{Instance, World};
+use crate::{
+    math::{Ray, Rgb},
+    volume::{
+        body::Bounds,
+        cells::CellWalk,
+        majorant::Majorant,
+        medium::{Coefficients, Segment},
+        phase::PhaseMix,
+    },
+};
+
+/// A volume that the ray enters. Few bytes, since a ray may meet many.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Entry {
+    t0: f32,
+    t1: f32,
+    instance: u32,
+}
+
+/// As many as meet most rays, so that they need no memory of their own.
+pub(super) type Entries = SmallVec<[Entry; 8]>;
+
+impl Entry {
+    /// Where `ray` is inside of a volume with anything in it.
+    pub(super) fn new(instance: &Instance, index: u32, ray: &Ray, t_max: f32) -> Option<Self> {
+        if let Bounds::Uniform(_, majorant) = instance.volume.bounds()
+            && majorant.is_zero()
+        {
+            return None;
+        }
+        let local = instance.local_ray(ray);
+        let (t0, t1) = instance.volume.region().intersect(&local, t_max)?;
+        Some(Self { t0, t1, instance: index })
+    }
+}
+
+/// The medium along one ray, walked from its origin outwards.
+#[derive(Clone, Debug)]
+pub struct MediumRay<'w> {
+    world: &'w World,
+    ray: Ray,
+    /// Volumes not reached yet, nearest last.
+    ahead: Entries,
+    /// Volumes the ray is in: those with matter in the present segment, and those whose next
+    /// matter comes later.
+    inside: SmallVec<[Cursor<'w>; 2]>,
+    /// Where the segment handed out last begins.
+    from: f32,
+    /// Where it ends, and the next may begin.
+    t: f32,
+}
+
+impl<'w> MediumRay<'w> {
+    pub(super) fn new(world: &'w World, ray: Ray, mut ahead: Entries) -> Self {
+        if ahead.len() > 1 {
+            ahead.sort_by(|a, b| b.t0.total_cmp(&a.t0));
+        }
+        Self { world, ray, ahead, inside: SmallVec::new(), from: 0.0, t: 0.0 }
+    }
+
+    /// The next stretch of the ray with something in it.
+    #[inline]
+    pub fn next_segment(&mut self) -> Option<Segment> {
+        if self.ahead.is_empty()
+            && let [only] = self.inside.as_mut_slice()
+        {
+            // Nothing to merge: the volume's own stretches are the segments.
+            if !only.advance() {
+                self.inside.clear();
+                return None;
+            }
+            (self.from, self.t) = (only.t0, only.t1);
+            return Some(only.segment());
+        }
+        self.next_merged()
+    }
+
+    fn next_merged(&mut self) -> Option<Segment> {
+        loop {
+            if self.inside.is_empty() {
+                self.t = self.ahead.last()?.t0.max(self.t);
+            }
+            let t = self.t;
+            while let Some(next) = self.ahead.last()
+                && next.t0 <= t
+            {
+                let instance = &self.world.instances[next.instance as usize];
+                self.inside.push(Cursor::enter(instance, &self.ray, next.t0, next.t1));
+                self.ahead.pop();
+            }
+            self.inside.retain(|cursor| cursor.reaches_beyond(t));
+            if self.inside.is_empty() {
+                continue;
+            }
+            let segment = self.merged();
+            (self.from, self.t) = (t, segment.t1);
+            if self.inside.iter().any(|cursor| cursor.is_at(t)) {
+                return Some(segment);
+            }
+        }
+    }
+
+    /// The segment from where the last one ended to the next border.
+    fn merged(&self) -> Segment {
+        let mut segment = Segment {
+            t0: self.t,
+            t1: self.ahead.last().map_or(f32::INFINITY, |next| next.t0),
+            uniform: true,
+            gray: true,
+            ..Segment::default()
+        };
+        for cursor in &self.inside {
+            if !cursor.is_at(self.t) {
+                segment.t1 = segment.t1.min(cursor.t0);
+                continue;
+            }
+            let own = cursor.segment();
+            segment.t1 = segment.t1.min(own.t1);
+            segment.majorant += own.majorant;
+            segment.emission_rate += own.emission_rate;
+            // The finest voxel decides how often the emission is worth looking at.
+            segment.voxel_rate = segment.voxel_rate.max(own.voxel_rate);
+            segment.uniform &= own.uniform;
+            segment.gray &= own.gray;
+        }
+        segment
+    }
+
+    /// The volumes with matter in the segment handed out last.
+    fn present(&self) -> impl Iterator<Item = &Cursor<'w>> {
+        self.inside.iter().filter(|cursor| cursor.is_at(self.from))
+    }
+
+    /// The coefficients at parameter `t` of the segment handed out last.
+    #[inline]
+    pub fn coefficients(&self, t: f32) -> Coefficients {
+        if let [cursor] = self.inside.as_slice() {
+            return cursor.coefficients(t);
+        }
+        self.present().fold(Coefficients::default(), |sum, cursor| {
+            let c = cursor.coefficients(t);
+            Coefficients {
+                mu_t: sum.mu_t + c.mu_t,
+                mu_s: sum.mu_s + c.mu_s,
+                emission: sum.emission + c.emission,
+            }
+        })
+    }
+
+    /// μ_t alone at parameter `t` of the segment handed out last.
+    #[inline]
+    pub fn mu_t(&self, t: f32) -> Rgb {
+        if let [cursor] = self.inside.as_slice() {
+            return cursor.mu_t(t);
+        }
+        self.present().fold(Rgb::ZERO, |sum, cursor| sum + cursor.mu_t(t))
+    }
+
+    /// μ_t and μ_s alone at parameter `t` of the segment handed out last.
+    #[inline]
+    pub fn extinction(&self, t: f32) -> (Rgb, Rgb) {
+        if let [cursor] = self.inside.as_slice() {
+            return cursor.extinction(t);
+        }
+        self.present().fold((Rgb::ZERO, Rgb::ZERO), |sum, cursor| {
+            let (mu_t, mu_s) = cursor.extinction(t);
+            (sum.0 + mu_t, sum.1 + mu_s)
+        })
+    }
+
+    /// ε alone at parameter `t` of the segment handed out last.
+    #[inline]
+    pub fn emission(&self, t: f32) -> Rgb {
+        if let [cursor] = self.inside.as_slice() {
+            return cursor.emission(t);
+        }
+        self.present().fold(Rgb::ZERO, |sum, cursor| sum + cursor.emission(t))
+    }
+
+    /// The phase function at parameter `t` of the segment handed out last.
+    pub fn phase(&self, t: f32) -> PhaseMix {
+        let mut mix = PhaseMix::default();
+        for cursor in self.present() {
+            mix.add(cursor.instance.volume.substance().g, cursor.extinction(t).1);
+        }
+        mix
+    }
+}
+
+/// One volume's way along the ray: the stretch it is in or comes to next.
+#[derive(Clone, Copy, Debug)]
+struct Cursor<'w> {
+    instance: &'w Instance,
+    /// The ray in the volume's space; its parameter is still the world's.
+    local: Ray,
+    t0: f32,
+    t1: f32,
+    majorant: Majorant,
+    way: Way,
+}
+
+/// What a volume is crossed by.
+#[derive(Clone, Copy, Debug)]
+enum Way {
+    /// At once, up to the end of a uniform volume.
+    Uniform { end: f32 },
+    /// Cell by cell.
+    Cells(CellWalk),
+}
+
+impl<'w> Cursor<'w> {
+    /// Before the first stretch of a volume entered at `t0` and left at `t1`.
+    fn enter(instance: &'w Instance, ray: &Ray, t0: f32, t1: f32) -> Self {
+        let local = instance.local_ray(ray);
+        let (majorant, way) = match instance.volume.bounds() {
+            Bounds::Uniform(_, majorant) => (*majorant, Way::Uniform { end: t1 }),
+            Bounds::Cells(grid) => (Majorant::default(), Way::Cells(grid.walk(&local, t0, t1))),
+        };
+        Self { instance, local, t0, t1: t0, majorant, way }
+    }
+
+    /// Goes to the next occupied stretch; false at the end.
+    #[inline]
+    fn advance(&mut self) -> bool {
+        match (&mut self.way, self.instance.volume.bounds()) {
+            (Way::Cells(walk), Bounds::Cells(grid)) => match grid.next_occupied(walk) {
+                Some((t0, t1, majorant)) => {
+                    (self.t0, self.t1, self.majorant) = (t0, t1, majorant);
+                    true
+                }
+                None => false,
+            },
+            (Way::Uniform { end }, _) if self.t1 < *end => {
+                self.t1 = *end;
+                true
+            }
+            _ => false,
+        }
+    }
+
+    /// Goes on until its stretch ends behind `t`; false if none does.
+    fn reaches_beyond(&mut self, t: f32) -> bool {
+        while self.t1 <= t {
+            if !self.advance() {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// Whether its stretch has begun at `t`.
+    #[inline]
+    fn is_at(&self, t: f32) -> bool {
+        self.t0 <= t
+    }
+
+    fn segment(&self) -> Segment {
+        Segment {
+            t0: self.t0,
+            t1: self.t1,
+            majorant: self.majorant.mu_t,
+            emission_rate: self.majorant.emission * self.instance.emission_rate,
+            voxel_rate: self.instance.voxel_rate,
+            uniform: matches!(self.way, Way::Uniform { .. }),
+            gray: self.instance.volume.substance().is_gray(),
+        }
+    }
+
+    #[inline]
+    fn mu_t(&self, t: f32) -> Rgb {
+        match self.instance.volume.bounds() {
+            Bounds::Uniform(coefficients, _) => coefficients.mu_t,
+            Bounds::Cells(_) => self.instance.volume.substance().mu_t(self.local.at(t)),
+        }
+    }
+
+    #[inline]
+    fn extinction(&self, t: f32) -> (Rgb, Rgb) {
+        match self.instance.volume.bounds() {
+            Bounds::Uniform(coefficients, _) => (coefficients.mu_t, coefficients.mu_s),
+            Bounds::Cells(_) => self.instance.volume.substance().extinction(self.local.at(t)),
+        }
+    }
+
+    #[inline]
+    fn emission(&self, t: f32) -> Rgb {
+        match self.instance.volume.bounds() {
+            Bounds::Uniform(coefficients, _) => coefficients.emission,
+            Bounds::Cells(_) => self.instance.volume.substance().emission(self.local.at(t)),
+        }
+    }
+
+    #[inline]
+    fn coefficients(&self, t: f32) -> Coefficients {
+        match self.instance.volume.bounds() {
+            Bounds::Uniform(coefficients, _) => *coefficients,
+            Bounds::Cells(_) => self.instance.volume.substance().at(self.local.at(t)),
+        }
+    }
+}
