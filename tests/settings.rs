@@ -134,7 +134,7 @@ fn samples(setting: &Strategy) -> u32 {
     match (setting.nee, setting.emission_ratio_tracking || setting.majorant_boost) {
         (true, true) => 112,
         (true, false) => 208,
-        (false, true) => 192,
+        (false, true) => 240,
         (false, false) => 320,
     }
 }

@@ -78,6 +78,14 @@ pub fn all_strategies() -> Vec<Strategy> {
         .collect()
 }
 
+/// Every strategy on, with each boost mode but the default.
+pub fn boost_modes() -> [Strategy; 3] {
+    [BoostMode::Optimal, BoostMode::Clamped, BoostMode::Literal].map(|boost_mode| {
+        let advanced = Advanced { boost_mode, ..Advanced::default() };
+        Strategy { advanced, ..Strategy::default() }
+    })
+}
+
 /// The finer keys in eight rows, an orthogonal array: every two keys meet in every pair of their
 /// values, and so do the last three, all three of them.
 pub fn finer() -> [Advanced; 8] {
