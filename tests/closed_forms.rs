@@ -3,7 +3,8 @@
 mod common;
 
 use common::{
-    Estimate, Verdicts, all_strategies, build, measure, measure_with, name, with_strategy,
+    Estimate, Verdicts, all_strategies, boost_modes, build, full_name, measure, measure_with, name,
+    with_strategy,
 };
 use flambeau::{
     math::Rgb,
@@ -251,6 +252,35 @@ fn chromatic_slab() {
     verdicts.finish();
 }
 
+/// The same slab glows isothermally: each channel L_e (1 − T) of its own, in every boost mode.
+#[test]
+fn glowing_chromatic_slab() {
+    let scene = build(&format!(
+        r#"{UPWARD}
+        [[volume]]
+        shape = "ramp"
+        half_size = [0.5, 0.5, 0.5]
+        translate = [0, 0, 0.5]
+        axis = "z"
+        a = 0.5
+        b = 1.0
+        density = {{ scale = [0.5, 1.0, 1.5] }}
+        albedo = 0.0
+        emission = {{ mode = "source", le = [1.0, 2.0, 0.5] }}
+        "#
+    ));
+    let mut verdicts = Verdicts::default();
+    for strategy in all_strategies().into_iter().filter(|s| s.nee).chain(boost_modes()) {
+        let estimate = measure(&with_strategy(&scene, strategy), 150_000);
+        for (channel, (tau, le)) in [(0.5, 1.0), (1.0, 2.0), (1.5_f64, 0.5)].into_iter().enumerate()
+        {
+            let expected = -le * (-tau).exp_m1();
+            verdicts.check_channel(&full_name(&strategy), &estimate, channel, expected);
+        }
+    }
+    verdicts.finish();
+}
+
 /// Single scattering of a point light in fog (Sun et al. 2005): extinction β, albedo 1, the light
 /// at distance d under an angle to the view, of length `length`.
 fn airlight(beta: f64, distance: f64, degrees: f64, length: f64, g: f64) -> String {
@@ -316,7 +346,7 @@ fn isothermal_radiance_is_alpha(volume: &str, camera: &str) {
         "#
     );
     let scene = build(&text);
-    for strategy in all_strategies() {
+    for strategy in all_strategies().into_iter().chain(boost_modes()) {
         let scene = with_strategy(&scene, strategy);
         let paths = 300_000;
         let difference = measure_with(&scene, paths, |sample| {
@@ -325,9 +355,9 @@ fn isothermal_radiance_is_alpha(volume: &str, camera: &str) {
         let radiance = measure(&scene, paths);
         for channel in 0..3 {
             let z = difference.mean[channel] / difference.error(channel).max(1e-9);
-            assert!(z.abs() < common::Z_LIMIT, "{}: z {z}", name(&strategy));
+            assert!(z.abs() < common::Z_LIMIT, "{}: z {z}", full_name(&strategy));
             let weak = difference.error(channel) > common::POWER * radiance.mean[channel];
-            assert!(!weak, "{}: too weak", name(&strategy));
+            assert!(!weak, "{}: too weak", full_name(&strategy));
         }
     }
 }

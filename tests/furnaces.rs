@@ -3,7 +3,9 @@
 
 mod common;
 
-use common::{Verdicts, all_strategies, build, measure, name, with_strategy};
+use common::{
+    Verdicts, all_strategies, build, every_line_setting, full_name, measure, name, with_strategy,
+};
 
 const CAMERA: &str = r#"
     [camera]
@@ -122,6 +124,36 @@ fn a_world_full_of_glowing_fog() {
         "#
     );
     check_everywhere(&text, 300_000, 3.0);
+}
+
+/// Fog without borders, fire in it and surfaces that emit what they do not reflect, all of one
+/// radiance: only the fire can be looked at, from the fog, the surfaces and itself.
+#[test]
+fn a_fire_in_a_world_full_of_glowing_fog() {
+    let scene = build(&format!(
+        r#"{CAMERA}
+        [[volume]]
+        shape = "everywhere"
+        density = {{ scale = [0.2, 0.4, 0.3] }}
+        albedo = [0.2, 0.5, 0.7]
+        emission = {{ mode = "source", le = 3.0 }}
+        [[surface]]
+        shape = "plane"
+        point = [0, 0, -1.1]
+        normal = [0, 0, 1]
+        material = {{ type = "diffuse", reflectance = 0.6 }}
+        emission = 1.2
+        {}"#,
+        volumes(0.5, r#"emission = { mode = "source", le = 3.0 }"#)
+    ));
+    let mut verdicts = Verdicts::default();
+    for setting in every_line_setting().into_iter().filter(|setting| setting.nee) {
+        let estimate = measure(&with_strategy(&scene, setting), 100_000);
+        for channel in 0..3 {
+            verdicts.check_channel(&full_name(&setting), &estimate, channel, 3.0);
+        }
+    }
+    verdicts.finish();
 }
 
 /// A glowing box without soot inside an absorber: emission and absorption of different volumes

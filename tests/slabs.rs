@@ -7,7 +7,9 @@
 
 mod common;
 
-use common::{Verdicts, all_strategies, build, measure, name, with_strategy};
+use common::{
+    Verdicts, all_strategies, build, every_line_setting, full_name, measure, name, with_strategy,
+};
 use flambeau::transport::strategy::{Preset, Strategy};
 
 /// g, albedo, optical depth, R, T, ε.
@@ -98,6 +100,44 @@ fn emissivity_in_every_combination_of_toggles() {
             let estimate =
                 measure(&with_strategy(&scene, strategy), paths_for(emissivity, &strategy));
             verdicts.check(&label, &estimate, emissivity);
+        }
+    }
+    verdicts.finish();
+}
+
+/// Three rows in one slab, a channel each, made of cells and wide enough to be endless: density
+/// and albedo are chromatic, and looks at its glow come from inside it. In every setting whose looks
+/// a vertex inside fire allows.
+#[test]
+fn emissivity_channel_by_channel() {
+    let rows = [ROWS[0], ROWS[1], [0.0, 0.0, 1.0, 0.0, 0.0, 0.0]];
+    let [density, albedo] = [2, 1].map(|column| rows.map(|row| row[column]));
+    // Without looks the rows stand above. The last channel does not scatter: along the normal 1 − e^−1.
+    let expected = [rows[0][5], rows[1][5], 1.0 - (-1.0_f64).exp()];
+    let scene = build(&format!(
+        r#"
+        [camera]
+        position = [0, 0, 2]
+        target = [0, 0, 0]
+        up = [0, 1, 0]
+        fov_x = 0.01
+        [[volume]]
+        shape = "ramp"
+        half_size = [40, 40, 0.5]
+        translate = [0, 0, 0.5]
+        axis = "z"
+        a = 1.0
+        b = 0.0
+        density = {{ scale = {density:?} }}
+        albedo = {albedo:?}
+        emission = {{ mode = "source", le = 1.0 }}
+        "#
+    ));
+    let mut verdicts = Verdicts::default();
+    for setting in every_line_setting().into_iter().filter(|setting| setting.nee) {
+        let estimate = measure(&with_strategy(&scene, setting), 190_000);
+        for (channel, expected) in expected.into_iter().enumerate() {
+            verdicts.check_channel(&full_name(&setting), &estimate, channel, expected);
         }
     }
     verdicts.finish();

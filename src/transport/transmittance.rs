@@ -214,3 +214,6 @@ impl Transmittance {
 pub(super) fn exp(x: Rgb) -> Rgb {
     if x == Rgb::splat(x.x) { Rgb::splat(x.x.exp()) } else { x.exp() }
 }
+
+#[cfg(test)]
+mod tests;

@@ -13,7 +13,10 @@ use flambeau::{
     math::Rgb,
     render::{Film, estimate::PixelEstimate},
     scene::{self, Overrides, VolumeCache},
-    transport::{Frame, PathSample, PixelSampler, Scene, strategy::Strategy},
+    transport::{
+        Frame, PathSample, PixelSampler, Scene,
+        strategy::{Advanced, BoostMode, LightSelection, NeeEvaluation, Strategy},
+    },
 };
 use glam::UVec2;
 use rayon::prelude::*;
@@ -75,6 +78,83 @@ pub fn all_strategies() -> Vec<Strategy> {
         .collect()
 }
 
+/// Every strategy on, with each boost mode but the default.
+pub fn boost_modes() -> [Strategy; 3] {
+    [BoostMode::Optimal, BoostMode::Clamped, BoostMode::Literal].map(|boost_mode| {
+        let advanced = Advanced { boost_mode, ..Advanced::default() };
+        Strategy { advanced, ..Strategy::default() }
+    })
+}
+
+/// The finer keys in eight rows, an orthogonal array: every two keys meet in every pair of their
+/// values, and so do the last three, all three of them.
+pub fn finer() -> [Advanced; 8] {
+    let modes = [BoostMode::Stratified, BoostMode::Optimal, BoostMode::Clamped, BoostMode::Literal];
+    std::array::from_fn(|row| {
+        let [a, b, c] = [row & 1 != 0, row & 2 != 0, row & 4 != 0];
+        Advanced {
+            boost_mode: modes[row % 4],
+            boost_amount: if c { 64.0 } else { 2.0 },
+            nee_evaluation: if a ^ c { NeeEvaluation::Point } else { NeeEvaluation::Line },
+            light_selection: if b ^ c {
+                LightSelection::Uniform
+            } else {
+                LightSelection::Hierarchy
+            },
+            low_discrepancy: a ^ b ^ c,
+            ..Advanced::default()
+        }
+    })
+}
+
+/// Every combination of the toggles with each row of [`finer`], those that are the same by
+/// definition once: ratio tracking overrides decoupling, and a key without its toggle says nothing.
+pub fn every_setting() -> Vec<Strategy> {
+    let mut settings: Vec<Strategy> = Vec::new();
+    for toggles in all_strategies() {
+        for advanced in finer() {
+            let setting = effective(Strategy { advanced, ..toggles });
+            if !settings.contains(&setting) {
+                settings.push(setting);
+            }
+        }
+    }
+    settings
+}
+
+/// Those of [`every_setting`] whose looks at fire gather its glow all along the line. To a vertex
+/// inside fire, its glow at one point has infinite variance: no z-test can judge it there.
+pub fn every_line_setting() -> Vec<Strategy> {
+    let line = |setting: &Strategy| setting.advanced.nee_evaluation == NeeEvaluation::Line;
+    every_setting().into_iter().filter(line).collect()
+}
+
+fn effective(mut strategy: Strategy) -> Strategy {
+    let plain = Advanced::default();
+    let has_own_walk = strategy.emission_ratio_tracking;
+    strategy.emission_decoupling &= !has_own_walk;
+    strategy.majorant_boost &= has_own_walk || strategy.emission_decoupling;
+    let advanced = &mut strategy.advanced;
+    if !strategy.majorant_boost {
+        (advanced.boost_mode, advanced.boost_amount) = (plain.boost_mode, plain.boost_amount);
+    } else if !has_own_walk && advanced.boost_mode != BoostMode::Literal {
+        advanced.boost_mode = BoostMode::Clamped;
+    }
+    if !strategy.nee {
+        advanced.nee_evaluation = plain.nee_evaluation;
+    }
+    strategy
+}
+
+/// The name of a strategy with its finer keys.
+pub fn full_name(strategy: &Strategy) -> String {
+    let Advanced { boost_mode, boost_amount, nee_evaluation, light_selection, .. } =
+        strategy.advanced;
+    let spread = if strategy.advanced.low_discrepancy { "even" } else { "random" };
+    let name = name(strategy);
+    format!("{name} {boost_mode:?} {boost_amount} {nee_evaluation:?} {light_selection:?} {spread}")
+}
+
 /// A short name of a strategy for messages.
 pub fn name(strategy: &Strategy) -> String {
     let on = |flag: bool, letter: char| if flag { letter } else { '-' };
@@ -131,13 +211,24 @@ pub fn measure(scene: &Scene, paths: u32) -> Estimate {
 }
 
 /// Comparisons gathered, so that one run shows all that fail.
-#[derive(Default)]
 pub struct Verdicts {
     failures: Vec<String>,
     count: usize,
+    power: f64,
+}
+
+impl Default for Verdicts {
+    fn default() -> Self {
+        Self::of_power(POWER)
+    }
 }
 
 impl Verdicts {
+    /// Comparisons whose standard error may be as large as `power`, relative to what is expected.
+    pub fn of_power(power: f64) -> Self {
+        Self { failures: Vec::new(), count: 0, power }
+    }
+
     /// Holds channel 0 of an estimate against a known value.
     pub fn check(&mut self, label: &str, estimate: &Estimate, expected: f64) {
         self.check_channel(label, estimate, 0, expected);
@@ -160,7 +251,7 @@ impl Verdicts {
         if z.abs() > Z_LIMIT {
             self.failures.push(format!("{label}: {mean} ± {error}, expected {expected}, z {z:.1}"));
         }
-        if error > POWER * expected.abs() {
+        if error > self.power * expected.abs() {
             self.failures.push(format!("{label}: too weak, {error} of {expected}"));
         }
     }
