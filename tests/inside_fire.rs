@@ -14,7 +14,7 @@ use flambeau::{
     transport::{
         PathSample, Scene,
         direct::{self, Departure},
-        emission::{self, Errand},
+        emission::{Errand, Gatherer},
         strategy::{Preset, Strategy},
         vertex::Vertex,
     },
@@ -163,6 +163,7 @@ fn second_moments(scene: &Scene, depth: f32) -> [f64; 3] {
     let vertex = vertex_below(depth);
     let [instance] = scene.world.instances() else { panic!("one volume") };
     let solid_angle = 2.0 * TAU / f64::from(STEPS * STEPS);
+    let gatherer = Gatherer::new(scene, UVec2::ONE);
     (0..STEPS * STEPS)
         .into_par_iter()
         .map(|i| {
@@ -174,8 +175,7 @@ fn second_moments(scene: &Scene, depth: f32) -> [f64; 3] {
             let (value, phase_pdf) = vertex.eval(direction);
             let mut rng = PathRng::new(0, UVec2::ZERO, 0);
             let medium = scene.world.along(ray, f32::INFINITY);
-            let radiance =
-                emission::gather(medium, &scene.strategy, Errand::Light, &mut rng).emission.x;
+            let radiance = gatherer.gather(medium, Errand::Light, &mut rng).emission.x;
             let found = f64::from(value.x * radiance);
             let weight = f64::from(mis::balance(light_pdf, phase_pdf));
             let unweighted = found * found / f64::from(light_pdf);
@@ -217,6 +217,7 @@ fn mis_bounds_the_variance_near_the_border() {
 #[test]
 fn no_look_from_inside_exceeds_the_brightest_ray() {
     let slab = glowing_slab();
+    let gatherer = Gatherer::new(&slab, UVec2::ONE);
     let brightest = 0.5_f32;
     let mut sums = [0.0; 2];
     const LOOKS: u32 = 20_000;
@@ -224,7 +225,7 @@ fn no_look_from_inside_exceeds_the_brightest_ray() {
         let vertex = vertex_below(depth);
         for i in 0..LOOKS {
             let mut rng = PathRng::new(seed(), UVec2::ZERO, i);
-            let (light, _) = direct::sample_lights(&slab, &vertex, &mut rng);
+            let (light, _) = direct::sample_lights(&slab, &gatherer, &vertex, &mut rng);
             assert!(light.max_element() <= brightest * 1.0001, "{depth}: a look brings {light}");
             let turn = vertex.sample(&mut rng).unwrap();
             let ray: Ray = vertex.ray(turn.direction);

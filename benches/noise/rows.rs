@@ -22,7 +22,8 @@ const MODES: [(BoostMode, &str); 4] = [
     (BoostMode::Stratified, "stratified"),
 ];
 
-/// Collisions along the brightest chord that modes are compared at.
+/// Collisions along the brightest chord that modes are compared at; of the optimal majorant, 32nds
+/// of what it finds.
 const AMOUNTS: [f32; 5] = [0.25, 1.0, 4.0, 16.0, 64.0];
 
 /// Toggle upon toggle, from none to all, then all but one of the finer choices.

@@ -23,7 +23,7 @@ const STRATIFIED_VERTICES: u32 = 4;
 /// | | | | |
 /// |---|---|---|---|
 /// | `PixelX`, `TurnX` | `PixelY`, `TurnY` | `Emission` | `TransmittanceA` |
-/// | `Distance` | `Event` | `TurnPick` | `TransmittanceB` |
+/// | `Distance` | | `TurnPick` | `TransmittanceB` |
 /// | `LightX` | `LightY` | `LightCell` | `LightPick` |
 /// | `LightEmission` | `LightTransmittanceA` | `LightZ` | `LightTransmittanceB` |
 ///
@@ -43,8 +43,6 @@ pub enum Slot {
     TransmittanceB,
     /// The first flight of the scattering walk along that ray.
     Distance,
-    /// What happens where it ends.
-    Event,
     /// Which light is looked at.
     LightPick,
     /// Which part of that light.
@@ -78,7 +76,6 @@ impl Slot {
             Self::Emission => (0, 2),
             Self::TransmittanceA => (0, 3),
             Self::Distance => (1, 0),
-            Self::Event => (1, 1),
             Self::TurnPick => (1, 2),
             Self::TransmittanceB => (1, 3),
             Self::LightX => (2, 0),
@@ -317,14 +314,13 @@ mod tests {
         assert!((sum / f64::from(n) - 1.0).abs() < 5e-3);
     }
 
-    const SLOTS: [Slot; 18] = [
+    const SLOTS: [Slot; 17] = [
         Slot::PixelX,
         Slot::PixelY,
         Slot::Emission,
         Slot::TransmittanceA,
         Slot::TransmittanceB,
         Slot::Distance,
-        Slot::Event,
         Slot::LightPick,
         Slot::LightCell,
         Slot::LightX,
@@ -445,7 +441,7 @@ mod tests {
     fn means_are_unbiased() {
         for samples in [1, 3, 11, 100] {
             for (k, &slot) in SLOTS[2..].iter().enumerate() {
-                let other = SLOTS[2 + (k + 5) % 16];
+                let other = SLOTS[2 + (k + 5) % (SLOTS.len() - 2)];
                 // cos(2πk u) + (u < 1/3) v² with mean 1/9.
                 let value = |seed, s| {
                     let mut rng = PathRng::stratified(seed, UVec2::new(9, 4), s);

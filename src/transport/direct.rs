@@ -105,7 +105,13 @@ fn sample_volume(
         return (Rgb::ZERO, 0);
     }
     let value = value * mis::balance(light_pdf, vertex_pdf);
-    let (found, collisions) = match scene.strategy.advanced.nee_evaluation {
+    // Points are drawn inside of the lights only. Glow beyond them, which lines of sight bring as
+    // well, shares their weights, so that it takes the line.
+    let evaluation = match scene.strategy.advanced.nee_evaluation {
+        NeeEvaluation::Point if !scene.world.glows_beyond_lights() => NeeEvaluation::Point,
+        _ => NeeEvaluation::Line,
+    };
+    let (found, collisions) = match evaluation {
         NeeEvaluation::Line => {
             let t_max =
                 surface::intersect(&scene.surfaces, &ray).map_or(f32::INFINITY, |end| end.hit.t);

@@ -44,11 +44,13 @@ pub struct Advanced {
     /// that.
     #[schemars(range(min = 0.0, max = 1000.0))]
     pub boost_amount: f32,
-    /// With `boost_mode = "clamped"` or where that stands in: the shortest boosted step, counted in voxels.
+    /// With `boost_mode = "clamped"` or where that stands in: the shortest boosted step, counted in
+    /// voxels.
     #[schemars(range(min = 0.01, max = 1000.0), extend("unit" = "voxels"))]
     pub boost_clamp_voxels: f32,
     /// What a look at the fire brings back. `line` gathers its glow all along the line of sight;
-    /// `point` takes one point of it, which is cheaper and noisier.
+    /// `point` takes one point of it, which is cheaper and noisier; where fog without borders glows,
+    /// it is the line all the same.
     pub nee_evaluation: NeeEvaluation,
     /// How a bounce chooses the light it looks at. `hierarchy` prefers what is bright and near;
     /// `uniform` gives every light the same chance.

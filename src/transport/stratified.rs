@@ -65,7 +65,8 @@ pub(super) fn gather(mut medium: MediumRay, boost: f32, errand: Errand, rng: &mu
         let Some(next) = medium.next_segment() else { break };
         segment = next;
     }
-    let collisions = walk.read();
+    // A walk that is cut may have read a few places more.
+    let collisions = walk.read().min(MOST_COLLISIONS);
     Glow { emission: walk.emission, transmittance: walk.way.estimate(), collisions }
 }
 

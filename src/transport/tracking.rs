@@ -214,8 +214,9 @@ pub struct Flight {
 }
 
 /// The scattering walk: at each tentative collision one of absorption, scattering and null (or,
-/// with the albedo in the weight, one of the latter two) is chosen with P ∝ the channels' mean of w·μ, so that the throughput stays near one color and the
-/// factors μ/(μ̄ P) near 1 (Kutz et al. 2017, section 5.1, history-aware probabilities).
+/// with the albedo in the weight, one of the latter two) is chosen with P ∝ the channels' mean of
+/// w·μ, so that the throughput stays near one color and the factors μ/(μ̄ P) near 1 (Kutz et al.
+/// 2017, section 5.1, history-aware probabilities).
 ///
 /// That is spectral MIS in closed form: with f_c what the path so far brings to channel c, which
 /// is also how likely that channel's own analog walk is to take it, the probabilities make the
@@ -356,8 +357,8 @@ impl Scattering {
 
     /// Coefficients in whose proportion a collision is an absorption or a scattering event.
     ///
-    /// Where absorption has nothing to show, a real collision always scatters, and the weight
-    /// carries the albedo: a path that lives on dimly beats one that mostly dies.
+    /// Where emission is not gathered by absorption, a real collision always scatters, and the
+    /// weight carries the albedo: a path that lives on dimly beats one that mostly dies.
     ///
     /// Where absorption alone shows the emission, it happens as often as μ_a says, and often
     /// enough to show it: ε may be positive with little or no μ_a. The other events make up for

@@ -63,7 +63,7 @@ impl Comb {
 /// Transmittance of the way so far.
 pub(super) struct Transmittance {
     /// The combs of the present block, each with its optical distance in it.
-    combs: SmallVec<[(Comb, Rgb); 2]>,
+    combs: SmallVec<[(Comb, Rgb); 6]>,
     /// Places where a comb reads μ_t, for each unit of the majorants' optical distance.
     reads_per_depth: f32,
     /// The majorants' optical distance that is left of the block.
@@ -107,15 +107,12 @@ impl Transmittance {
         end: f32,
         rng: &mut PathRng,
     ) -> ControlFlow<()> {
-        if majorant <= 0.0 {
-            return ControlFlow::Continue(());
-        }
-        loop {
+        while t < end && majorant > 0.0 {
             let depth = majorant * (end - t);
             if depth < self.depth_left {
                 self.read(medium, majorant, t, end);
                 self.depth_left -= depth;
-                return ControlFlow::Continue(());
+                break;
             }
             // However short the block, the way goes on.
             let block_end = (t + self.depth_left / majorant).max(t.next_up()).min(end);
@@ -123,6 +120,7 @@ impl Transmittance {
             self.end_block(rng)?;
             t = block_end;
         }
+        ControlFlow::Continue(())
     }
 
     #[inline]
@@ -141,13 +139,13 @@ impl Transmittance {
     /// Takes the block as passed and begins the next; what is behind much matters less.
     fn end_block(&mut self, rng: &mut PathRng) -> ControlFlow<()> {
         self.before *= self.of_block();
-        if self.reads >= MOST_COLLISIONS {
-            return ControlFlow::Break(());
-        }
         self.depth_left = BLOCK_DEPTH;
         self.reads_per_depth = (0.5 * self.reads_per_depth).max(1.0);
         let jitters = [rng.uniform(), rng.uniform()];
         self.set_combs(jitters, rng);
+        if self.reads >= MOST_COLLISIONS {
+            return ControlFlow::Break(());
+        }
         roulette(&mut self.before, rng)
     }
 

@@ -13,6 +13,8 @@ use crate::{
 pub(super) struct Emissive {
     indices: Vec<u32>,
     hierarchy: Bvh,
+    /// Whether anything glows that is no light.
+    unsampled: bool,
 }
 
 impl Emissive {
@@ -21,7 +23,9 @@ impl Emissive {
             (0..instances.len() as u32).filter(|&i| instances[i as usize].emits()).collect();
         let boxes: Vec<Aabb> =
             indices.iter().map(|&i| instances[i as usize].emission_bounds()).collect();
-        Self { indices, hierarchy: Bvh::new(&boxes) }
+        let unsampled =
+            instances.iter().any(|i| !i.emits() && i.volume().substance().emission.is_some());
+        Self { indices, hierarchy: Bvh::new(&boxes), unsampled }
     }
 }
 
@@ -73,6 +77,11 @@ impl Instance {
 }
 
 impl World {
+    /// Whether anything glows where no sampled point lies: media without borders.
+    pub fn glows_beyond_lights(&self) -> bool {
+        self.emissive.unsampled
+    }
+
     /// Indices of the instances that can be sampled as lights, ascending.
     pub fn emissive(&self) -> &[u32] {
         &self.emissive.indices
@@ -87,7 +96,7 @@ impl World {
                 visit(index, pdf);
             }
         };
-        let Emissive { indices, hierarchy } = &self.emissive;
+        let Emissive { indices, hierarchy, .. } = &self.emissive;
         if indices.len() <= FEW {
             indices.iter().for_each(|&index| meet(index));
         } else {
