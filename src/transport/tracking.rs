@@ -221,7 +221,7 @@ pub struct Flight {
 /// That is spectral MIS in closed form: with f_c what the path so far brings to channel c, which
 /// is also how likely that channel's own analog walk is to take it, the probabilities make the
 /// path's density the mean of f over the channels, and its weight f_c / mean f (Miller et al.
-/// 2019, section 6).
+/// 2019).
 pub fn scatter(
     medium: MediumRay,
     strategy: &Strategy,

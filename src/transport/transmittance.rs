@@ -4,7 +4,7 @@
 //! each unit of a multiple of the majorants' optical distance, and so errs little. T = exp(−τ) is
 //! made unbiased from several of them by its power series about one: with X_i independent unbiased
 //! estimates of τ, exp(−X_0) Σ_k Π_{i≤k} (X_0 − X_i)/k! has mean exp(−τ), since each factor has
-//! mean X_0 − τ (Georgiev et al. 2019, section 4; Kettunen et al. 2021, section 4, from which the
+//! mean X_0 − τ (Georgiev et al. 2019; Kettunen et al. 2021, section 4, from which the
 //! average over all choices of pivot and factors, a U-statistic, comes as well). Two combs nearly
 //! do, and the higher terms are left to roulette.
 //!
