@@ -57,8 +57,13 @@ impl Counting {
 
 impl PixelSampler for Counting {
     fn sample(&self, pixel: UVec2, sample: u32) -> PathSample {
-        if self.calls.fetch_add(1, Ordering::SeqCst) + 1 == self.limit {
+        let call = self.calls.fetch_add(1, Ordering::SeqCst) + 1;
+        if call == self.limit {
             self.interrupt.store(true, Ordering::SeqCst);
+        }
+        // Whoever comes later sees the interrupt, even if its thread was held up before it.
+        while call > self.limit && !self.interrupt.load(Ordering::SeqCst) {
+            std::thread::yield_now();
         }
         path(pixel, sample)
     }

@@ -90,8 +90,8 @@ fn sample_volume(
     rng: &mut PathRng,
 ) -> (Rgb, u32) {
     let from = vertex.receiver();
-    let u = [Slot::LightX, Slot::LightY, Slot::LightZ].map(|slot| rng.at(slot)).into();
     let pick = rng.at64(Slot::LightCell);
+    let u = [Slot::LightX, Slot::LightY, Slot::LightZ].map(|slot| rng.at(slot)).into();
     let volume = &scene.world.instances()[instance as usize];
     let Some(point) = volume.sample_emission(pick, u) else { return (Rgb::ZERO, 0) };
     let Some(direction) = (point - from.position).try_normalize() else { return (Rgb::ZERO, 0) };

@@ -43,6 +43,9 @@ pub enum Errand {
     Light,
 }
 
+/// The share of the looks along a camera ray that any other ray gets.
+const OTHER_LOOKS: f32 = 0.25;
+
 impl Errand {
     /// How many of `looks` along the brightest chord the errand is worth. Camera rays are looked at
     /// closely. Any other ray is one of many directions whose choice is noisier than a glance
@@ -50,7 +53,7 @@ impl Errand {
     pub(super) fn share(self, looks: f32) -> f32 {
         match self {
             Self::Camera => looks,
-            Self::Scattered | Self::Light => 0.25 * looks,
+            Self::Scattered | Self::Light => OTHER_LOOKS * looks,
         }
     }
 }

@@ -84,6 +84,11 @@ impl Path<'_> {
             self.gather_emission(weight * flight.emission, observer);
         }
         self.throughput *= flight.weight;
+        if !self.throughput.is_finite() {
+            // Leads nowhere, and is counted with the sample it spoils.
+            self.sample.indirect += self.throughput;
+            return false;
+        }
         if self.scatters == 0 {
             self.note_first_event(&flight, end.as_ref(), coverage);
         }

@@ -17,6 +17,12 @@ use crate::{
     volume::{medium::Segment, world::MediumRay},
 };
 
+/// Places where a comb along a camera ray reads μ_t, for each unit of the majorants' optical
+/// distance: T̂ is the larger part of the noise that is left there.
+const CAMERA_READS: f32 = 6.0;
+/// The same along any other ray, whose direction was a noisier choice.
+const OTHER_READS: f32 = 1.0;
+
 /// How closely a walk looks, and the numbers its places are jittered by.
 struct Effort {
     /// Looks at the emission along the brightest chord.
@@ -31,8 +37,8 @@ impl Effort {
     fn new(boost: f32, errand: Errand) -> Self {
         let looks = errand.share(boost);
         let reads = match errand {
-            Errand::Camera => 6.0,
-            Errand::Scattered | Errand::Light => 1.0,
+            Errand::Camera => CAMERA_READS,
+            Errand::Scattered | Errand::Light => OTHER_READS,
         };
         let (jitter, comb_jitters) = match errand {
             Errand::Camera | Errand::Scattered => {
@@ -80,10 +86,11 @@ struct Stratified {
 
 impl Stratified {
     fn new(effort: &Effort, rng: &mut PathRng) -> Self {
+        let looks = Comb::new(rng.at(effort.jitter));
         let jitters = effort.comb_jitters.map(|slot| rng.at(slot));
         Self {
             looks_per_chord: effort.looks,
-            looks: Comb::new(rng.at(effort.jitter)),
+            looks,
             way: Transmittance::new(effort.reads, jitters, rng),
             emission: Rgb::ZERO,
             looked: 0,

@@ -342,8 +342,13 @@ impl Scattering {
     ) -> ControlFlow<()> {
         let (mu_t, mu_s) = medium.extinction(at.t);
         let mu_n = (at.rate - mu_t.x).max(0.0);
-        let u = rng.uniform() * (mu_n + mu_t.x);
-        if u < mu_n {
+        let total = mu_n + mu_t.x;
+        if !total.is_finite() {
+            self.weight *= total;
+            self.event = Event::Absorbed { t: at.t, real: false };
+            return ControlFlow::Break(());
+        }
+        if rng.uniform() * total < mu_n {
             return ControlFlow::Continue(());
         }
         if mu_s.x > 0.0 {

@@ -49,7 +49,7 @@ pub struct MediumRay<'w> {
     ahead: Entries,
     /// Volumes the ray is in: those with matter in the present segment, and those whose next
     /// matter comes later.
-    inside: SmallVec<[Cursor<'w>; 2]>,
+    inside: SmallVec<[Cursor<'w>; 3]>,
     /// Where the segment handed out last begins.
     from: f32,
     /// Where it ends, and the next may begin.
