@@ -154,3 +154,6 @@ impl Stratified {
         self.way.cross_uniform(c.mu_t, segment, rng)
     }
 }
+
+#[cfg(test)]
+mod tests;
