@@ -206,6 +206,9 @@ fn plain(value: &(impl Serialize + Debug)) -> String {
         Ok(serde_json::Value::Number(number)) => {
             number.as_f64().map_or(number.to_string(), |value| (value as f32).to_string())
         }
+        Ok(serde_json::Value::Array(values)) => {
+            format!("[{}]", values.iter().map(plain).collect::<Vec<_>>().join(", "))
+        }
         _ => format!("{value:?}"),
     }
 }
@@ -219,5 +222,13 @@ mod tests {
         let names = ["A", "B", "emission.G", "emission.R", "state.alpha.A", "state.x.R"];
         let names: Vec<String> = names.map(str::to_owned).to_vec();
         assert_eq!(layers(&names), "(A B), emission.(G R), state (2 channels)");
+    }
+
+    #[test]
+    fn values_are_as_a_scene_file_has_them() {
+        use crate::scene::settings::{Color, LightKind};
+        assert_eq!(plain(&LightKind::Sphere), "sphere");
+        assert_eq!(plain(&Color::Gray(0.1)), "0.1");
+        assert_eq!(plain(&Color::Rgb([0.1, 0.25, 3.0])), "[0.1, 0.25, 3]");
     }
 }
