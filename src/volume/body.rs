@@ -44,7 +44,7 @@ impl Region {
                 let middle = -ray.origin.dot(ray.direction) / a;
                 let nearest = ray.at(middle);
                 let half_squared = (radius * radius - nearest.length_squared()) / a;
-                if !(half_squared > 0.0) {
+                if half_squared <= 0.0 || half_squared.is_nan() {
                     return None;
                 }
                 let half = half_squared.sqrt();
