@@ -3,8 +3,8 @@
 mod common;
 
 use common::{
-    Estimate, Verdicts, all_strategies, boost_modes, build, full_name, measure, measure_with, name,
-    with_strategy,
+    Estimate, Verdicts, boost_modes, build, full_name, half_of_strategies, measure, measure_with,
+    name, with_strategy,
 };
 use flambeau::{
     math::Rgb,
@@ -24,7 +24,7 @@ const UPWARD: &str = r#"
 /// looked at, and once with that toggle on is enough.
 fn in_every_combination(text: &str, paths: u32, mut check: impl FnMut(&str, &Estimate)) {
     let scene = build(text);
-    for strategy in all_strategies().into_iter().filter(|strategy| strategy.nee) {
+    for strategy in half_of_strategies().into_iter().filter(|strategy| strategy.nee) {
         let estimate = measure(&with_strategy(&scene, strategy), paths);
         check(&name(&strategy), &estimate);
     }
@@ -272,7 +272,7 @@ fn glowing_chromatic_slab() {
         "#
     ));
     let mut verdicts = Verdicts::default();
-    for strategy in all_strategies().into_iter().filter(|s| s.nee).chain(boost_modes()) {
+    for strategy in half_of_strategies().into_iter().filter(|s| s.nee).chain(boost_modes()) {
         let estimate = measure(&with_strategy(&scene, strategy), 150_000);
         for (channel, (tau, le)) in [(0.5, 1.0), (1.0, 2.0), (1.5_f64, 0.5)].into_iter().enumerate()
         {
@@ -348,7 +348,7 @@ fn isothermal_radiance_is_alpha(volume: &str, camera: &str) {
         "#
     );
     let scene = build(&text);
-    for strategy in all_strategies().into_iter().filter(|s| s.nee).chain(boost_modes()) {
+    for strategy in half_of_strategies().into_iter().filter(|s| s.nee).chain(boost_modes()) {
         let scene = with_strategy(&scene, strategy);
         let paths = 300_000;
         let difference = measure_with(&scene, paths, |sample| {

@@ -225,7 +225,7 @@ fn no_look_from_inside_exceeds_the_brightest_ray() {
         let vertex = vertex_below(depth);
         for i in 0..LOOKS {
             let mut rng = PathRng::new(seed(), UVec2::ZERO, i);
-            let (light, _) = direct::sample_lights(&slab, &gatherer, &vertex, &mut rng);
+            let light = direct::sample_lights(&slab, &gatherer, &vertex, &mut rng).light;
             assert!(light.max_element() <= brightest * 1.0001, "{depth}: a look brings {light}");
             let turn = vertex.sample(&mut rng).unwrap();
             let ray: Ray = vertex.ray(turn.direction);

@@ -21,7 +21,7 @@ fn set(text: &str, assignments: &[&str]) -> flambeau::error::Result<Settings> {
     scene::parse(text, "torch.toml", Path::new("/scenes"), &overrides)
 }
 
-/// The scene of the format's description, apart from `probe_mis`, which is not there yet.
+/// The scene of the format's description.
 const EXAMPLE: &str = r#"
 [camera]
 position = [0.0, -6.5, 2.2]
@@ -76,6 +76,7 @@ emission_decoupling = true
 emission_ratio_tracking = true
 majorant_boost = true
 nee = true
+probe_mis = true
 [strategy.advanced]
 boost_mode = "stratified"
 "#;
@@ -226,11 +227,10 @@ const MALFORMED: &[(&str, &[&str])] = &[
     ("[strategy]\nmajorant_bost = true", &["strategy.majorant_bost:", "strategy.majorant_boost"]),
     ("[strategy]\nmajorant_boost = 1", &["strategy.majorant_boost:", "expected boolean"]),
     ("[strategy]\npreset = 'best'", &["strategy.preset:", "\"best\"", "\"full\""]),
-    ("[strategy]\nprobe_mis = true", &["strategy.probe_mis:", "strategy is not there yet"]),
     ("[strategy]\nintegrator = 'march'", &["strategy.integrator:", "not there yet"]),
     (
-        "[strategy.advanced]\nprobe_count = 3",
-        &["strategy.advanced.probe_count:", "strategy is not there yet"],
+        "[strategy.advanced]\nprobe_learning = true",
+        &["strategy.advanced.probe_learning:", "strategy is not there yet"],
     ),
     (
         "[strategy.advanced]\nlight_selection = 'probes'",
@@ -337,7 +337,7 @@ fn faulty_overrides_are_refused_by_name() {
         ("volume=3", &["--set: volume:", "[[volume]]"]),
         ("volume.0=3", &["--set: volume.0:", "expected table"]),
         ("strategy.preset=best", &["--set: strategy.preset:", "\"best\""]),
-        ("strategy.probe_mis=true", &["strategy.probe_mis:", "not there yet"]),
+        ("strategy.integrator=march", &["strategy.integrator:", "not there yet"]),
         ("a.b.c=1", &["--set: a:", "unknown key"]),
         ("=1", &["--set:", "unknown key"]),
     ] {

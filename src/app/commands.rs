@@ -21,6 +21,8 @@ pub enum Command {
     EmissionRatioTracking,
     MajorantBoost,
     FireAsLight,
+    /// Switch the strategy `probe_mis`.
+    Probes,
     FrameVolume,
     FitPicture,
     ZoomToPixels,
@@ -35,7 +37,7 @@ use Command as C;
 
 impl Command {
     /// All of them, in the order of the help page.
-    pub const ALL: [Self; 22] = [
+    pub const ALL: [Self; 23] = [
         C::Open,
         C::OpenPath,
         C::SaveExr,
@@ -50,6 +52,7 @@ impl Command {
         C::EmissionRatioTracking,
         C::MajorantBoost,
         C::FireAsLight,
+        C::Probes,
         C::FrameVolume,
         C::FitPicture,
         C::ZoomToPixels,
@@ -77,6 +80,7 @@ impl Command {
             C::EmissionRatioTracking => "Emission ratio tracking",
             C::MajorantBoost => "Majorant boost",
             C::FireAsLight => "Fire as a light",
+            C::Probes => "Light probes",
             C::FrameVolume => "Frame the volume",
             C::FitPicture => "Fit the picture",
             C::ZoomToPixels => "Zoom to pixels",
@@ -106,7 +110,8 @@ impl Command {
             C::EmissionDecoupling
             | C::EmissionRatioTracking
             | C::MajorantBoost
-            | C::FireAsLight => {
+            | C::FireAsLight
+            | C::Probes => {
                 "Switch this strategy on or off; the picture stays the same, its noise does not."
             }
             C::FrameVolume => "Move the camera so that all volumes are in the picture.",
@@ -137,6 +142,7 @@ impl Command {
             C::EmissionRatioTracking => (Modifiers::NONE, Key::Num2),
             C::MajorantBoost => (Modifiers::NONE, Key::Num3),
             C::FireAsLight => (Modifiers::NONE, Key::Num4),
+            C::Probes => (Modifiers::NONE, Key::Num5),
             C::FrameVolume => (Modifiers::NONE, Key::F),
             C::FitPicture => (Modifiers::NONE, Key::Home),
             C::ZoomToPixels => (Modifiers::NONE, Key::Z),

@@ -4,7 +4,7 @@ use crate::scene::Settings;
 use crate::scene::settings::{
     Albedo, EmissionMode, MaterialKind, MaterialSettings, SurfaceSettings, VolumeSettings,
 };
-use crate::transport::strategy::NeeEvaluation;
+use crate::transport::strategy::{Distance, NeeEvaluation};
 
 /// A toggle of the strategy panel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,11 +17,16 @@ pub enum Toggle {
     MajorantBoost,
     /// `nee`.
     FireAsLight,
+    /// `probe_mis`.
+    Probes,
 }
 
 /// Why `toggle` makes no difference to noise or cost in this scene; `None` where it does.
 pub fn no_effect(toggle: Toggle, settings: &Settings) -> Option<&'static str> {
     let strategy = &settings.strategy;
+    if toggle == Toggle::Probes {
+        return probes_without_effect(settings);
+    }
     if !settings.volume.iter().any(emits) {
         return Some("no volume in this scene emits light.");
     }
@@ -42,7 +47,17 @@ pub fn no_effect(toggle: Toggle, settings: &Settings) -> Option<&'static str> {
         Toggle::FireAsLight if !turns_light(settings) => {
             Some("nothing here scatters or reflects light, so fire is only seen directly.")
         }
-        Toggle::FireAsLight => None,
+        Toggle::FireAsLight | Toggle::Probes => None,
+    }
+}
+
+fn probes_without_effect(settings: &Settings) -> Option<&'static str> {
+    if settings.strategy.advanced.distance == Distance::Null {
+        Some("the distance is chosen by chance alone (Advanced).")
+    } else if !settings.volume.iter().any(scatters) {
+        Some("no volume in this scene scatters light.")
+    } else {
+        None
     }
 }
 

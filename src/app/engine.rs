@@ -24,7 +24,7 @@ pub enum News {
         /// Where it came from, as the user named it.
         source: String,
         /// What it holds.
-        settings: Settings,
+        settings: Box<Settings>,
         /// What was guessed for a bare volume, one a line.
         notes: Vec<String>,
     },
@@ -237,7 +237,7 @@ impl Engine {
                     Job::Open(source) => {
                         self.refused = None;
                         let (settings, notes) = (built.settings.clone(), built.notes.clone());
-                        News::Opened { source, settings, notes }
+                        News::Opened { source, settings: Box::new(settings), notes }
                     }
                 });
                 self.built = Some(built);

@@ -148,7 +148,7 @@ impl App {
             match item {
                 News::Opened { source, settings, notes } => {
                     self.notes = notes;
-                    self.editor.open(settings);
+                    self.editor.open(*settings);
                     self.viewport.zoom = Default::default();
                     self.notices = Notices::default();
                     self.source = source;

@@ -166,6 +166,11 @@ impl Lights {
         })
     }
 
+    /// All lights that are somewhere.
+    pub fn emitters(&self, world: &World) -> Vec<Emitter> {
+        self.lights.iter().filter_map(|light| light.emitter(world)).collect()
+    }
+
     fn selector(&self, choice: Choice) -> &Selector {
         if choice.volumes { &self.all } else { &self.without_volumes }
     }

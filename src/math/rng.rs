@@ -13,7 +13,7 @@ use super::{blue_noise, sobol};
 /// other; noise is measured between the randomizations, which don't.
 pub const ACCUMULATORS: usize = 8;
 
-/// Vertices whose slots are spread evenly. Later ones add up over so many dimensions that there is
+/// Vertices of a branch whose slots are spread evenly. Later ones add up over so many dimensions that there is
 /// nothing left to gain.
 const STRATIFIED_VERTICES: u32 = 4;
 
@@ -23,7 +23,7 @@ const STRATIFIED_VERTICES: u32 = 4;
 /// | | | | |
 /// |---|---|---|---|
 /// | `PixelX`, `TurnX` | `PixelY`, `TurnY` | `Emission` | `TransmittanceA` |
-/// | `Distance` | | `TurnPick` | `TransmittanceB` |
+/// | `Distance` | `GuidedDistance` | `TurnPick` | `TransmittanceB` |
 /// | `LightX` | `LightY` | `LightCell` | `LightPick` |
 /// | `LightEmission` | `LightTransmittanceA` | `LightZ` | `LightTransmittanceB` |
 ///
@@ -43,6 +43,8 @@ pub enum Slot {
     TransmittanceB,
     /// The first flight of the scattering walk along that ray.
     Distance,
+    /// The first flight of the guided walk along that ray, where there are two.
+    GuidedDistance,
     /// Which light is looked at.
     LightPick,
     /// Which part of that light.
@@ -76,6 +78,7 @@ impl Slot {
             Self::Emission => (0, 2),
             Self::TransmittanceA => (0, 3),
             Self::Distance => (1, 0),
+            Self::GuidedDistance => (1, 1),
             Self::TurnPick => (1, 2),
             Self::TransmittanceB => (1, 3),
             Self::LightX => (2, 0),
@@ -108,7 +111,7 @@ pub struct PathRng {
     index: u32,
     /// The vertex slots are for.
     vertex: u32,
-    /// How many vertices have stratified slots.
+    /// How many vertices have stratified slots, both branches counted.
     stratified_vertices: u32,
     /// The row that `shuffled` is for, by vertex; none yet where it is the largest number.
     shuffled_row: u32,
@@ -134,7 +137,7 @@ impl PathRng {
             // The complement keeps clear of the keys of single samples.
             key: mix(!key ^ u64::from(randomization)),
             index: sample / RANDOMIZATIONS,
-            stratified_vertices: STRATIFIED_VERTICES,
+            stratified_vertices: 2 * STRATIFIED_VERTICES,
             tile_position: pixel.wrapping_add(tile_offset(seed, randomization)),
             ..Self::with_key(key, sample)
         }
@@ -156,7 +159,14 @@ impl PathRng {
     /// Enters vertex `index` of the path (0: the camera): slots mean that vertex's from now on.
     #[inline]
     pub fn enter_vertex(&mut self, index: u32) {
-        self.vertex = index;
+        self.vertex = if index < STRATIFIED_VERTICES { index } else { u32::MAX };
+    }
+
+    /// Enters vertex `index`, counted from the camera, of the path's second branch.
+    #[inline]
+    pub fn enter_vertex_of_branch(&mut self, index: u32) {
+        let stratified = index < STRATIFIED_VERTICES;
+        self.vertex = if stratified { STRATIFIED_VERTICES + index } else { u32::MAX };
     }
 
     /// The number in [0, 1) for `slot` of the present vertex, in steps of 2⁻²⁴. Ask for it at most
@@ -314,13 +324,14 @@ mod tests {
         assert!((sum / f64::from(n) - 1.0).abs() < 5e-3);
     }
 
-    const SLOTS: [Slot; 17] = [
+    const SLOTS: [Slot; 18] = [
         Slot::PixelX,
         Slot::PixelY,
         Slot::Emission,
         Slot::TransmittanceA,
         Slot::TransmittanceB,
         Slot::Distance,
+        Slot::GuidedDistance,
         Slot::LightPick,
         Slot::LightCell,
         Slot::LightX,

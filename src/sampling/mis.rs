@@ -16,6 +16,16 @@ pub fn balance(pdf: f32, other_pdf: f32) -> f32 {
     }
 }
 
+/// What a sample whose weight is over the first of `pdfs` is multiplied by, where each strategy is
+/// drawn from so many times on average as `counts` say: its density over their mixture, the
+/// balance heuristic. All in the same measure.
+///
+/// 0 where the first density is 0.
+#[inline]
+pub fn mixture(counts: [f32; 2], pdfs: [f32; 2]) -> f32 {
+    if pdfs[0] <= 0.0 { 0.0 } else { 1.0 / (counts[0] + counts[1] * (pdfs[1] / pdfs[0])) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,4 +1,6 @@
 //! Samplers, each with its density beside it, and the one place where MIS weights are made.
 
+pub mod equiangular;
+pub mod halo;
 pub mod mis;
 pub mod warp;

@@ -35,6 +35,11 @@ impl Camera {
         Ray::new(self.position, (self.forward + across).normalize())
     }
 
+    /// Where it is.
+    pub fn position(&self) -> Vec3A {
+        self.position
+    }
+
     /// A point of the world as the camera sees it: to the right, up and forward of it.
     pub fn view_from_world(&self, point: Vec3A) -> Vec3A {
         let offset = point - self.position;

@@ -6,6 +6,8 @@
 //! them along the line: that is how often any look at any of them goes there, so that a look
 //! gathers the emission of all, and where they overlap nothing needs to be kept apart.
 
+use glam::Vec3A;
+
 use super::{
     emission::{Errand, Gatherer},
     scene::Scene,
@@ -14,7 +16,7 @@ use super::{
     vertex::Vertex,
 };
 use crate::{
-    light::{Choice, Light, Receiver},
+    light::{Choice, Light, LightSample, Receiver},
     math::{PathRng, Ray, Rgb, Slot},
     sampling::mis,
     surface::{self, Intersection, occluded},
@@ -38,93 +40,173 @@ fn choice(strategy: &Strategy) -> Choice {
     Choice { volumes: strategy.nee, uniform }
 }
 
-/// Light that a sampled light sends to `vertex` and on along the path, and the collisions of the
-/// walk towards it. `gatherer` looks at volumes.
+/// A direction drawn at a receiver towards one of the lights.
+#[derive(Clone, Copy, Debug)]
+struct Aim {
+    /// Unit direction towards it.
+    direction: Vec3A,
+    at: Target,
+}
+
+/// What is looked at.
+#[derive(Clone, Copy, Debug)]
+enum Target {
+    /// A light with a place of its own, chosen with a probability.
+    Solid { light: LightSample, probability: f32 },
+    /// A point of an emissive volume.
+    Volume { point: Vec3A },
+}
+
+impl Aim {
+    /// Chooses a light and draws a direction towards it; `None` where there is nothing to look at.
+    fn new(scene: &Scene, from: &Receiver, rng: &mut PathRng) -> Option<Self> {
+        let (light, probability) = scene.lights.choose(from, choice(&scene.strategy), rng)?;
+        if let Light::Volume(instance) = light {
+            let pick = rng.at64(Slot::LightCell);
+            let u = [Slot::LightX, Slot::LightY, Slot::LightZ].map(|slot| rng.at(slot)).into();
+            let volume = &scene.world.instances()[*instance as usize];
+            let point = volume.sample_emission(pick, u)?;
+            let direction = (point - from.position).try_normalize()?;
+            return Some(Self { direction, at: Target::Volume { point } });
+        }
+        let light = light.sample(from.position, rng)?;
+        Some(Self { direction: light.direction, at: Target::Solid { light, probability } })
+    }
+
+    /// Density over solid angle of the direction, the choice of the light included.
+    fn pdf_solid_angle(&self, scene: &Scene, from: &Receiver) -> f32 {
+        match &self.at {
+            Target::Solid { light, probability } => probability * light.pdf,
+            Target::Volume { .. } => pdf_of_volumes(scene, &self.ray(from), from),
+        }
+    }
+
+    /// Whether scattered rays meet what is looked at as well, so that MIS must share it.
+    fn can_be_met(&self) -> bool {
+        match &self.at {
+            Target::Solid { light, .. } => light.can_be_met,
+            Target::Volume { .. } => true,
+        }
+    }
+
+    /// The point that is looked at; `None` for the sun, which is nowhere.
+    fn point(&self, from: &Receiver) -> Option<Vec3A> {
+        match &self.at {
+            Target::Solid { light, .. } if light.distance.is_finite() => {
+                Some(from.position + light.distance * light.direction)
+            }
+            Target::Solid { .. } => None,
+            Target::Volume { point } => Some(*point),
+        }
+    }
+
+    fn ray(&self, from: &Receiver) -> Ray {
+        Ray::new(from.position, self.direction)
+    }
+
+    /// The radiance that comes from there over the density of looking there, which is `pdf`, and
+    /// the collisions of the walk towards it. `gatherer` looks at volumes.
+    fn radiance_over_pdf(
+        &self,
+        scene: &Scene,
+        gatherer: &Gatherer,
+        from: &Receiver,
+        pdf: f32,
+        rng: &mut PathRng,
+    ) -> (Rgb, u32) {
+        let ray = self.ray(from);
+        match &self.at {
+            Target::Solid { light, .. } => {
+                let (radiance, collisions) = radiance_of_solid(scene, &ray, light, rng);
+                (radiance / pdf, collisions)
+            }
+            Target::Volume { point } if looks_at_points(scene) => {
+                emission_at_point(scene, &ray, (*point - ray.origin).length(), from, rng)
+            }
+            Target::Volume { .. } => {
+                let end = surface::intersect(&scene.surfaces, &ray);
+                let t_max = end.map_or(f32::INFINITY, |end| end.hit.t);
+                let glow = gatherer.gather(scene.world.along(ray, t_max), Errand::Light, rng);
+                (glow.emission / pdf, glow.collisions)
+            }
+        }
+    }
+}
+
+/// What a look at the lights brings.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Look {
+    /// Light that a sampled light sends to the vertex and on along the path.
+    pub light: Rgb,
+    /// The point of the light that was looked at, if it is somewhere.
+    pub point: Option<Vec3A>,
+    /// Collisions of the walk towards it.
+    pub collisions: u32,
+}
+
+/// Looks from `vertex` at one of the lights. `gatherer` looks at volumes.
 pub fn sample_lights(
     scene: &Scene,
     gatherer: &Gatherer,
     vertex: &Vertex,
     rng: &mut PathRng,
-) -> (Rgb, u32) {
+) -> Look {
     let from = vertex.receiver();
-    match scene.lights.choose(&from, choice(&scene.strategy), rng) {
-        None => (Rgb::ZERO, 0),
-        Some((Light::Volume(instance), _)) => {
-            sample_volume(scene, gatherer, vertex, *instance, rng)
-        }
-        Some((light, probability)) => sample_solid(scene, vertex, light, probability, rng),
+    let Some(aim) = Aim::new(scene, &from, rng) else { return Look::default() };
+    let unseen = Look { point: aim.point(&from), ..Look::default() };
+    let (value, vertex_pdf) = vertex.eval(aim.direction);
+    if value.max_element() <= 0.0 {
+        return unseen;
     }
+    let light_pdf = aim.pdf_solid_angle(scene, &from);
+    if light_pdf <= 0.0 {
+        return unseen;
+    }
+    let weight = if aim.can_be_met() { mis::balance(light_pdf, vertex_pdf) } else { 1.0 };
+    let (found, collisions) = aim.radiance_over_pdf(scene, gatherer, &from, light_pdf, rng);
+    Look { light: value * weight * found, collisions, ..unseen }
 }
 
-/// A look at a light with a place of its own; transmittance is ratio tracked.
-fn sample_solid(
-    scene: &Scene,
-    vertex: &Vertex,
-    light: &Light,
-    probability: f32,
-    rng: &mut PathRng,
-) -> (Rgb, u32) {
-    let Some(light) = light.sample(vertex.receiver().position, rng) else { return (Rgb::ZERO, 0) };
-    let (value, vertex_pdf) = vertex.eval(light.direction);
-    let light_pdf = probability * light.pdf;
-    if value.max_element() <= 0.0 || light_pdf <= 0.0 {
-        return (Rgb::ZERO, 0);
-    }
-    let ray = vertex.ray(light.direction);
-    let distance = SHORT_OF_LIGHT * light.distance;
-    if occluded(&scene.surfaces, &ray, distance) {
-        return (Rgb::ZERO, 0);
-    }
-    let (transmittance, collisions) =
-        tracking::transmittance(scene.world.along(ray, light.distance), rng);
-    let weight = if light.can_be_met { mis::balance(light_pdf, vertex_pdf) } else { 1.0 };
-    (value * light.radiance * transmittance * (weight / light_pdf), collisions)
+/// A point of a light, chosen as a look from a receiver would; `None` where that is nowhere.
+pub fn point_of_light(scene: &Scene, from: &Receiver, rng: &mut PathRng) -> Option<Vec3A> {
+    Aim::new(scene, from, rng)?.point(from)
 }
 
-/// A look at an emissive volume: a direction towards where its power comes from.
-fn sample_volume(
+/// An estimate of the light that arrives at a receiver, by one look at one of the lights: its
+/// direction, and its radiance over the density of the look. Lights are all that is found: not the
+/// environment, not what has scattered.
+pub fn glance(
     scene: &Scene,
     gatherer: &Gatherer,
-    vertex: &Vertex,
-    instance: u32,
+    from: &Receiver,
+    rng: &mut PathRng,
+) -> Option<(Vec3A, Rgb)> {
+    let aim = Aim::new(scene, from, rng)?;
+    let pdf = aim.pdf_solid_angle(scene, from);
+    (pdf > 0.0).then(|| (aim.direction, aim.radiance_over_pdf(scene, gatherer, from, pdf, rng).0))
+}
+
+/// What a light with a place of its own sends along `ray`; transmittance is ratio tracked.
+fn radiance_of_solid(
+    scene: &Scene,
+    ray: &Ray,
+    light: &LightSample,
     rng: &mut PathRng,
 ) -> (Rgb, u32) {
-    let from = vertex.receiver();
-    let pick = rng.at64(Slot::LightCell);
-    let u = [Slot::LightX, Slot::LightY, Slot::LightZ].map(|slot| rng.at(slot)).into();
-    let volume = &scene.world.instances()[instance as usize];
-    let Some(point) = volume.sample_emission(pick, u) else { return (Rgb::ZERO, 0) };
-    let Some(direction) = (point - from.position).try_normalize() else { return (Rgb::ZERO, 0) };
-    let (value, vertex_pdf) = vertex.eval(direction);
-    if value.max_element() <= 0.0 {
+    if occluded(&scene.surfaces, ray, SHORT_OF_LIGHT * light.distance) {
         return (Rgb::ZERO, 0);
     }
-    let ray = vertex.ray(direction);
-    let light_pdf = pdf_of_volumes(scene, &ray, &from);
-    if light_pdf <= 0.0 {
-        return (Rgb::ZERO, 0);
-    }
-    let value = value * mis::balance(light_pdf, vertex_pdf);
-    // Points are drawn inside of the lights only. Glow beyond them, which lines of sight bring as
-    // well, shares their weights, so that it takes the line.
-    let evaluation = match scene.strategy.advanced.nee_evaluation {
-        NeeEvaluation::Point if !scene.world.glows_beyond_lights() => NeeEvaluation::Point,
-        _ => NeeEvaluation::Line,
-    };
-    let (found, collisions) = match evaluation {
-        NeeEvaluation::Line => {
-            let t_max =
-                surface::intersect(&scene.surfaces, &ray).map_or(f32::INFINITY, |end| end.hit.t);
-            let medium = scene.world.along(ray, t_max);
-            let glow = gatherer.gather(medium, Errand::Light, rng);
-            (glow.emission / light_pdf, glow.collisions)
-        }
-        NeeEvaluation::Point => {
-            let distance = (point - ray.origin).length();
-            emission_at_point(scene, &ray, distance, &from, rng)
-        }
-    };
-    (value * found, collisions)
+    let medium = scene.world.along(*ray, light.distance);
+    let (transmittance, collisions) = tracking::transmittance(medium, rng);
+    (light.radiance * transmittance, collisions)
+}
+
+/// Whether looks at volumes take one point of them. Points are drawn inside of the lights only.
+/// Glow beyond them, which lines of sight bring as well, shares their weights, so that it takes
+/// the line.
+fn looks_at_points(scene: &Scene) -> bool {
+    scene.strategy.advanced.nee_evaluation == NeeEvaluation::Point
+        && !scene.world.glows_beyond_lights()
 }
 
 /// The emission at one point of the ray through the medium before it, over the density with which

@@ -43,6 +43,8 @@ pub enum Errand {
     Light,
 }
 
+/// Looks of [`Gatherer::at_a_glance`].
+const GLANCE: f32 = 8.0;
 /// The share of the looks along a camera ray that any other ray gets.
 const OTHER_LOOKS: f32 = 0.25;
 
@@ -95,6 +97,11 @@ impl Gatherer {
     /// By the optimal majorant, with so many looks along the brightest chord.
     pub(super) fn optimal(looks: f32) -> Self {
         Self(Kind::Optimal(looks))
+    }
+
+    /// With so few looks that one more ray costs next to nothing.
+    pub(super) fn at_a_glance() -> Self {
+        Self(Kind::Stratified(GLANCE))
     }
 
     /// Gathers the emission along the medium.

@@ -2,10 +2,12 @@
 
 pub mod camera;
 pub mod direct;
+mod distance;
 pub mod emission;
 pub mod observer;
 mod optimal;
 pub mod path;
+pub mod probes;
 pub mod scene;
 pub mod strategy;
 mod stratified;
@@ -23,6 +25,8 @@ pub use scene::Scene;
 use crate::math::{PathRng, Rgb, Slot};
 use emission::Gatherer;
 use observer::{Nobody, Observer};
+use path::Aids;
+use probes::Probes;
 
 /// What one path brought to its pixel: four parts that sum to the beauty, and what else is kept.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -66,15 +70,18 @@ pub struct Frame {
     seed: u64,
     /// Fits the scene and the size, and so do both stay as they are.
     gatherer: Gatherer,
+    /// Those of the scene.
+    probes: Option<Arc<Probes>>,
 }
 
 impl Frame {
     /// Frames `scene` on a film of `size` pixels; `seed` chooses the random numbers of the whole
-    /// picture. With the optimal majorant a few milliseconds go into finding how often it looks,
-    /// whatever the seed.
+    /// picture. Probes are placed where they are asked for, and with the optimal majorant a few milliseconds go into finding how often it looks,
+    /// both whatever the seed.
     pub fn new(scene: Arc<Scene>, size: UVec2, seed: u64) -> Self {
         let gatherer = Gatherer::new(&scene, size);
-        Self { scene, size, seed, gatherer }
+        let probes = Probes::new(&scene).map(Arc::new);
+        Self { scene, size, seed, gatherer, probes }
     }
 
     /// Pixels across and down.
@@ -91,7 +98,9 @@ impl Frame {
         };
         let offset = Vec2::new(rng.at(Slot::PixelX), rng.at(Slot::PixelY));
         let ray = self.scene.camera.ray(self.size, pixel, offset);
-        path::trace(&self.scene, &self.gatherer, ray, &mut rng, observer)
+        let probes = self.probes.as_deref();
+        let aids = Aids { gatherer: &self.gatherer, probes };
+        path::trace(&self.scene, aids, ray, &mut rng, observer)
     }
 }
 

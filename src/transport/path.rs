@@ -8,17 +8,23 @@
 //! With ratio tracking the scattering walk gathers neither, so that nothing counts twice.
 //! Every combination of toggles has the same mean.
 
+use glam::Vec3A;
+
 use super::{
     PathSample,
     direct::{self, Departure},
+    distance::{self, Guide},
     emission::{Errand, Gatherer},
     observer::{Observer, Step},
+    probes::Probes,
     scene::Scene,
     tracking::{self, Event, Flight},
-    vertex::Vertex,
+    vertex::{Turn, Vertex},
 };
 use crate::{
+    light::Receiver,
     math::{PathRng, Ray, Rgb, mean},
+    sampling::{equiangular::Equiangular, halo::Halo},
     surface::{self, Bsdf, Intersection, Material},
     volume::world::MediumRay,
 };
@@ -27,38 +33,70 @@ use crate::{
 pub const GUARD: u32 = 100_000;
 /// Scattering events and reflections before roulette may end a path.
 const ROULETTE_AFTER: u32 = 3;
+/// Throughput below which it does. Paths that may yet come to light are not worth less for being
+/// dim: at 1 the noise of dense smoke costs a third more time, that of lights inside of it several
+/// times as much.
+const ROULETTE_BELOW: f32 = 0.1;
+/// Rays of a path that ask the probes, where all vertices do: later ones bring so little that the
+/// lines along them cost more than they gain.
+const GUIDED_RAYS: u32 = 4;
 
-/// Follows one path from the camera along `ray`; `gatherer` is the emission's own walk.
+/// What was prepared for the scene.
+#[derive(Clone, Copy, Debug)]
+pub struct Aids<'s> {
+    /// The emission's own walk.
+    pub gatherer: &'s Gatherer,
+    /// What says where scattering pays, if that is asked for.
+    pub probes: Option<&'s Probes>,
+}
+
+/// Follows one path from the camera along `ray`.
 pub fn trace(
     scene: &Scene,
-    gatherer: &Gatherer,
+    aids: Aids<'_>,
     ray: Ray,
     rng: &mut PathRng,
     observer: &mut impl Observer,
 ) -> PathSample {
     let mut path = Path {
         scene,
-        gatherer,
+        aids,
         ray,
         throughput: Rgb::ONE,
         scatters: 0,
         departure: None,
+        light: None,
+        branch: Branch::Main,
         sample: PathSample::default(),
     };
     while path.advance(rng, observer) {}
+    path.follow_branch(rng, observer);
     path.sample
 }
 
 struct Path<'s> {
     scene: &'s Scene,
-    gatherer: &'s Gatherer,
+    aids: Aids<'s>,
     ray: Ray,
     throughput: Rgb,
     /// Scattering events and reflections so far.
     scatters: u32,
     /// None for the camera ray.
     departure: Option<Departure>,
+    /// A point of a light that guides the ray.
+    light: Option<Vec3A>,
+    branch: Branch,
     sample: PathSample,
+}
+
+/// The camera ray's flight may be two: unguided, and guided.
+enum Branch {
+    /// The unguided one is followed.
+    Main,
+    /// It still is; then comes the other, from its first vertex on.
+    Waiting { vertex: Vertex, throughput: Rgb },
+    /// The guided one is followed.
+    Guided,
 }
 
 impl Path<'_> {
@@ -77,8 +115,7 @@ impl Path<'_> {
         if coverage.is_some() && self.is_last_ray() {
             return false;
         }
-        let flight = tracking::scatter(medium, &scene.strategy, self.throughput, rng);
-        self.count(flight.collisions);
+        let flight = self.fly(medium, end.as_ref(), rng);
         if flight.emission != Rgb::ZERO {
             let weight = direct::weight_of_emission(scene, &self.ray, self.departure.as_ref());
             self.gather_emission(weight * flight.emission, observer);
@@ -92,28 +129,107 @@ impl Path<'_> {
         if self.scatters == 0 {
             self.note_first_event(&flight, end.as_ref(), coverage);
         }
+        match self.arrive(flight.event, end.as_ref(), observer) {
+            Some(vertex) => self.turn(&vertex, rng, observer),
+            None => false,
+        }
+    }
 
-        let vertex = match flight.event {
+    /// Follows the guided flight of the camera ray, if one waits.
+    fn follow_branch(&mut self, rng: &mut PathRng, observer: &mut impl Observer) {
+        let waiting = std::mem::replace(&mut self.branch, Branch::Guided);
+        if let Branch::Waiting { vertex, throughput } = waiting {
+            (self.throughput, self.scatters) = (throughput, 0);
+            let mut goes_on = self.turn(&vertex, rng, observer);
+            while goes_on {
+                goes_on = self.advance(rng, observer);
+            }
+        }
+    }
+
+    /// The vertex a flight leads to, if there is one.
+    fn arrive(
+        &mut self,
+        event: Event,
+        end: Option<&Intersection>,
+        observer: &mut impl Observer,
+    ) -> Option<Vertex> {
+        match event {
             Event::Absorbed { t, .. } => {
                 observer.step(Step::Absorbed { point: self.ray.at(t) });
-                return false;
+                None
             }
             Event::Scattered { t, phase } => {
-                Vertex::volume(self.ray.at(t), self.ray.direction, phase)
+                Some(Vertex::volume(self.ray.at(t), self.ray.direction, phase))
             }
             Event::Reached => {
-                if !scene.strategy.emission_ratio_tracking {
+                if !self.scene.strategy.emission_ratio_tracking {
                     let departure = self.departure.as_ref();
-                    let radiance = direct::at_the_end(scene, &self.ray, end.as_ref(), departure);
+                    let radiance = direct::at_the_end(self.scene, &self.ray, end, departure);
                     self.gather_end(radiance, observer);
                 }
-                match end.and_then(|end| reflecting(&end, &self.ray)) {
-                    Some(vertex) => vertex,
-                    None => return false,
-                }
+                end.and_then(|end| reflecting(end, &self.ray))
             }
+        }
+    }
+
+    /// The flight to the next scattering event, or to the end of the ray. The camera ray may have
+    /// two, the second of which waits. Rays from vertices have one, which is guided where nothing
+    /// is gained by getting to their end.
+    fn fly(&mut self, medium: MediumRay, end: Option<&Intersection>, rng: &mut PathRng) -> Flight {
+        let strategy = &self.scene.strategy;
+        let needs_end = !strategy.emission_ratio_tracking
+            || end.is_some_and(|end| end.surface.material != Material::Black);
+        let is_first = self.scatters == 0;
+        let guide = if is_first || !needs_end { self.guide(&medium, rng) } else { None };
+        let flight = match guide {
+            None => distance::null(medium, strategy, self.throughput, rng),
+            Some(guide) if is_first => {
+                let (flight, guided) =
+                    distance::null_and_guided(medium, strategy, &guide, self.throughput, rng);
+                if let Some(guided) = guided {
+                    self.wait(guided);
+                }
+                flight
+            }
+            Some(guide) => distance::null_or_guided(medium, strategy, &guide, self.throughput, rng),
         };
-        self.turn(&vertex, rng, observer)
+        self.count(flight.collisions);
+        flight
+    }
+
+    /// What guides the flight along the present ray.
+    fn guide(&mut self, medium: &MediumRay, rng: &mut PathRng) -> Option<Guide> {
+        let probes = self.aids.probes?;
+        let advanced = &self.scene.strategy.advanced;
+        let (t0, t1) = medium.extent()?;
+        let asks = self.scatters == 0 || advanced.guide_all_vertices && self.scatters < GUIDED_RAYS;
+        let line = if asks { probes.along(medium.clone(), &self.ray) } else { None };
+        if !advanced.equiangular {
+            return Guide::new(line, None);
+        }
+        if self.scatters == 0 {
+            let middle = self.ray.at(if t1.is_finite() { 0.5 * (t0 + t1) } else { t0 });
+            let from = Receiver { position: middle, normal: None };
+            self.light = direct::point_of_light(self.scene, &from, rng);
+        }
+        let light = self
+            .light
+            .and_then(|point| Equiangular::new(&self.ray, point, probes.mean_cosine(), t0, t1));
+        Guide::new(line, light)
+    }
+
+    /// Keeps the guided flight of the camera ray for later.
+    fn wait(&mut self, guided: Flight) {
+        self.count(guided.collisions);
+        let throughput = self.throughput * guided.weight;
+        if let Event::Scattered { t, phase } = guided.event
+            && throughput.is_finite()
+            && throughput != Rgb::ZERO
+        {
+            let vertex = Vertex::volume(self.ray.at(t), self.ray.direction, phase);
+            self.branch = Branch::Waiting { vertex, throughput };
+        }
     }
 
     /// The emission walk over the whole ray, and what lies at its end through the same T, which is
@@ -125,11 +241,16 @@ impl Path<'_> {
         rng: &mut PathRng,
         observer: &mut impl Observer,
     ) -> Rgb {
-        let errand = if self.departure.is_none() { Errand::Camera } else { Errand::Scattered };
-        let glow = self.gatherer.gather(medium, errand, rng);
-        self.count(glow.collisions);
         let departure = self.departure.as_ref();
         let radiance = direct::at_the_end(self.scene, &self.ray, end, departure);
+        let dark = radiance == Rgb::ZERO && !self.scene.world.glows();
+        if dark && departure.is_some() {
+            return Rgb::ZERO;
+        }
+        let errand = if departure.is_none() && !dark { Errand::Camera } else { Errand::Scattered };
+        let glow = self.aids.gatherer.gather(medium, errand, rng);
+        self.count(glow.collisions);
+        let departure = self.departure.as_ref();
         if glow.emission != Rgb::ZERO {
             let weight = direct::weight_of_emission(self.scene, &self.ray, departure);
             self.gather_emission(weight * glow.emission, observer);
@@ -154,23 +275,43 @@ impl Path<'_> {
             return false;
         }
         self.scatters += 1;
-        rng.enter_vertex(self.scatters);
+        match self.branch {
+            Branch::Guided => rng.enter_vertex_of_branch(self.scatters),
+            _ => rng.enter_vertex(self.scatters),
+        }
         observer.step(Step::Vertex { vertex, throughput: self.throughput });
-        let (light, collisions) = direct::sample_lights(self.scene, self.gatherer, vertex, rng);
-        self.count(collisions);
-        let light = self.throughput * light;
+        let look = direct::sample_lights(self.scene, self.aids.gatherer, vertex, rng);
+        self.count(look.collisions);
+        let light = self.throughput * look.light;
         observer.step(Step::Light { contribution: light });
         self.add_scattered(light);
 
         if self.sample.guard_hit {
             return false;
         }
-        let Some(turn) = vertex.sample(rng) else { return false };
+        self.light = look.point;
+        let Some(turn) = self.choose_direction(vertex, rng) else { return false };
         self.throughput *= turn.weight;
         self.ray = vertex.ray(turn.direction);
         let (from, pdf_solid_angle) = (vertex.receiver(), turn.pdf_solid_angle);
         self.departure = Some(Departure { from, pdf_solid_angle });
         self.survives(rng)
+    }
+
+    /// Where the path goes on from a vertex: sometimes towards the glow around a light that the
+    /// medium scatters much of.
+    fn choose_direction(&self, vertex: &Vertex, rng: &mut PathRng) -> Option<Turn> {
+        let probes = self.aids.probes.filter(|_| self.scene.strategy.advanced.guide_directions);
+        let (Some(probes), Some(point), false) = (probes, self.light, vertex.is_surface()) else {
+            return vertex.sample(rng);
+        };
+        let share = probes.share_of_halo();
+        match (point - vertex.receiver().position).try_normalize() {
+            Some(axis) if share > 0.0 => {
+                vertex.sample_towards(&Halo::new(axis, probes.mean_cosine()), share, rng)
+            }
+            _ => vertex.sample(rng),
+        }
     }
 
     /// Counts the collisions of a walk, and notes a walk that was cut.
@@ -181,7 +322,7 @@ impl Path<'_> {
 
     /// Russian roulette on the throughput, compensated.
     fn survives(&mut self, rng: &mut PathRng) -> bool {
-        let survival = self.throughput.max_element().min(1.0);
+        let survival = (self.throughput.max_element() / ROULETTE_BELOW).min(1.0);
         if self.scatters < ROULETTE_AFTER || survival >= 1.0 {
             return survival > 0.0;
         }

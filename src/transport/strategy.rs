@@ -24,6 +24,9 @@ pub struct Strategy {
     /// Treat burning volumes as lights: at every bounce, look straight at the fire as well as in a
     /// random direction. Much less noise wherever fire lights smoke, floors or walls.
     pub nee: bool,
+    /// Scatter where light is: probes spread over the smoke know how bright it is lit and send
+    /// paths there. Much less noise for torches in mist and other lights inside of thin smoke.
+    pub probe_mis: bool,
     /// The finer choices behind the toggles.
     pub advanced: Advanced,
 }
@@ -55,6 +58,22 @@ pub struct Advanced {
     /// How a bounce chooses the light it looks at. `hierarchy` prefers what is bright and near;
     /// `uniform` gives every light the same chance.
     pub light_selection: LightSelection,
+    /// How far a ray goes before it scatters, with the probes on. `mis` takes the distances of the
+    /// probes and of chance in turn and weighs both, so that it is good wherever one of them is;
+    /// `probes` takes those of the probes alone, `null` those of chance alone.
+    pub distance: Distance,
+    /// How many probes there are, about. More of them know the light better, and take longer to
+    /// place.
+    #[schemars(range(min = 64, max = 1_000_000))]
+    pub probe_count: u32,
+    /// Ask the probes at the first bounces as well, not only along the rays from the camera.
+    pub guide_all_vertices: bool,
+    /// With the probes on: also scatter near the point that light comes from, by equal angles of
+    /// view. Finds the light around lamps and fires that are nearer to the ray than probes can
+    /// tell.
+    pub equiangular: bool,
+    /// With the probes on: also send paths that have scattered towards the glow around the lights.
+    pub guide_directions: bool,
     /// Spread the samples of a pixel evenly instead of at random. Less noise at no cost; off it
     /// shows what independent samples would bring.
     pub low_discrepancy: bool,
@@ -97,6 +116,19 @@ pub enum LightSelection {
     Uniform,
 }
 
+/// How the distance to a scattering event is drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Distance {
+    /// By probes or by chance, weighed together.
+    #[default]
+    Mis,
+    /// By probes alone.
+    Probes,
+    /// By chance alone: null-collision tracking.
+    Null,
+}
+
 /// A named set of toggles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -113,14 +145,9 @@ pub enum Preset {
 /// Keys of `[strategy]` that the scene format knows but whose strategy is not there yet. They are
 /// refused with a message that says so, which is another message than for a misspelled key.
 pub const PLANNED_KEYS: &[&str] = &[
-    "probe_mis",
     "integrator",
-    "advanced.distance",
-    "advanced.probe_count",
     "advanced.probe_learning",
-    "advanced.guide_all_vertices",
     "advanced.scatter_probability",
-    "advanced.equiangular",
     "advanced.transmittance",
     "advanced.tracker",
     "advanced.integrator",
@@ -153,6 +180,11 @@ impl Default for Advanced {
             boost_clamp_voxels: 1.0,
             nee_evaluation: NeeEvaluation::default(),
             light_selection: LightSelection::default(),
+            distance: Distance::default(),
+            probe_count: 4096,
+            guide_all_vertices: false,
+            equiangular: true,
+            guide_directions: true,
             low_discrepancy: true,
         }
     }
@@ -170,6 +202,7 @@ impl Preset {
             emission_ratio_tracking: on,
             majorant_boost: on,
             nee: on,
+            probe_mis: self == Self::Full,
             advanced: Advanced::default(),
         }
     }

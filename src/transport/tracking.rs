@@ -11,7 +11,7 @@ use std::ops::ControlFlow;
 
 use super::{emission::EmissionMajorant, strategy::Strategy};
 use crate::{
-    math::{PathRng, Rgb, Slot, mean},
+    math::{PathRng, Rgb, mean},
     volume::{
         medium::{Coefficients, Segment},
         phase::PhaseMix,
@@ -36,6 +36,15 @@ pub(super) trait Walk {
 
     /// Crosses a uniform segment in closed form; false to be given its collisions instead.
     fn cross(&mut self, medium: &MediumRay, segment: &Segment, rng: &mut PathRng) -> bool;
+
+    /// Where the walk ends; at the end of the medium, if not before.
+    #[inline]
+    fn until(&self) -> f32 {
+        f32::INFINITY
+    }
+
+    /// The end of the walk at [`Walk::until`], if that lies in the medium.
+    fn arrive(&mut self, _medium: &MediumRay, _at: &Collision) {}
 
     /// A tentative collision under the majorant [`Collision::rate`].
     fn collide(&mut self, medium: &MediumRay, at: &Collision, rng: &mut PathRng)
@@ -63,7 +72,11 @@ pub(super) fn track(
     walk: &mut impl Walk,
 ) -> u32 {
     let mut collisions = 0;
+    let until = walk.until();
     while let Some(segment) = medium.next_segment() {
+        if segment.t0 > until {
+            break;
+        }
         if segment.uniform && walk.cross(&medium, &segment, rng) {
             continue;
         }
@@ -72,10 +85,15 @@ pub(super) fn track(
             continue;
         }
         let mut t = segment.t0;
+        let end = segment.t1.min(until);
         loop {
-            let depth_left = rate * (segment.t1 - t);
+            let depth_left = rate * (end - t);
             if optical_distance >= depth_left {
                 optical_distance -= depth_left;
+                if segment.t1 >= until {
+                    walk.arrive(&medium, &Collision { t: until, rate, segment: &segment });
+                    return collisions;
+                }
                 break;
             }
             // However short the step, the walk moves on.
@@ -205,10 +223,14 @@ pub enum Event {
 pub struct Flight {
     /// How it ended.
     pub event: Event,
-    /// Factor of the path's throughput up to and including the event.
+    /// Factor of the path's throughput up to and including the event, over the density of the
+    /// scattering walk.
     pub weight: Rgb,
     /// Emission gathered on the way, by the mode it was asked for.
     pub emission: Rgb,
+    /// Where it scatters, the density with which the scattering walk would, given the tentative
+    /// collisions before and apart from their own density: Π P_n · μ̄ P_s, 1/length.
+    pub pdf_null: f32,
     /// Tentative collisions on the way.
     pub collisions: u32,
 }
@@ -216,7 +238,8 @@ pub struct Flight {
 /// The scattering walk: at each tentative collision one of absorption, scattering and null (or,
 /// with the albedo in the weight, one of the latter two) is chosen with P ∝ the channels' mean of
 /// w·μ, so that the throughput stays near one color and the factors μ/(μ̄ P) near 1 (Kutz et al.
-/// 2017, section 5.1, history-aware probabilities).
+/// 2017, section 5.1, history-aware probabilities). The first step is `optical_distance` long,
+/// which has density exp(-x).
 ///
 /// That is spectral MIS in closed form: with f_c what the path so far brings to channel c, which
 /// is also how likely that channel's own analog walk is to take it, the probabilities make the
@@ -226,19 +249,31 @@ pub fn scatter(
     medium: MediumRay,
     strategy: &Strategy,
     throughput: Rgb,
+    optical_distance: f32,
     rng: &mut PathRng,
 ) -> Flight {
-    let gather = Gather::of(strategy);
-    let mut walk = Scattering {
-        majorant: EmissionMajorant::of(strategy),
-        gather,
-        throughput,
-        weight: Rgb::ONE,
-        emission: Rgb::ZERO,
-        event: Event::Reached,
-    };
-    let collisions = track(medium, rng.exponential_at(Slot::Distance), rng, &mut walk);
-    Flight { event: walk.event, weight: walk.weight, emission: walk.emission, collisions }
+    let mut walk = Scattering::new(strategy, throughput, f32::INFINITY);
+    let collisions = track(medium, optical_distance, rng, &mut walk);
+    walk.flight(collisions)
+}
+
+/// The way to a scattering event at parameter `t`, however that was drawn: a scattering walk all
+/// of whose collisions before are null, P_n = 1, and the density it would have had by chance. The
+/// weight is still over that density. Ends lost, with weight 0, where nothing scatters.
+pub fn fill(
+    medium: MediumRay,
+    strategy: &Strategy,
+    throughput: Rgb,
+    t: f32,
+    rng: &mut PathRng,
+) -> Flight {
+    let mut walk = Scattering::new(strategy, throughput, t);
+    let collisions = track(medium, rng.exponential(), rng, &mut walk);
+    if !matches!(walk.event, Event::Scattered { .. }) {
+        walk.weight = Rgb::ZERO;
+        walk.event = Event::Absorbed { t, real: false };
+    }
+    walk.flight(collisions)
 }
 
 struct Scattering {
@@ -249,15 +284,37 @@ struct Scattering {
     weight: Rgb,
     emission: Rgb,
     event: Event,
+    /// Where the event is, if that is given.
+    until: f32,
+    /// Π P_n so far, and T of the uniform stretches that have no null collisions.
+    reach: f32,
+    /// T of such a stretch, if the walk is in one.
+    reach_ahead: f32,
+    pdf_null: f32,
+}
+
+/// The events' shares of a collision, in proportion to their probabilities.
+struct Shares {
+    absorb: f32,
+    scatter: f32,
+    null: f32,
+    total: f32,
 }
 
 impl Walk for Scattering {
     fn rate(&mut self, segment: &Segment) -> f32 {
-        match self.gather {
+        let rate = match self.gather {
             Gather::Nothing => segment.majorant,
             Gather::EveryCollision => self.majorant.rate(segment),
             Gather::Absorption => segment.majorant.max(EMISSION_FLOOR * segment.emission_rate),
-        }
+        };
+        self.reach *= self.reach_ahead;
+        self.reach_ahead = if self.has_no_nulls(segment) {
+            (-rate * (segment.t1 - segment.t0)).exp()
+        } else {
+            1.0
+        };
+        rate
     }
 
     /// Where a uniform medium goes on for ever, a channel it is clear to never collides, and one
@@ -278,13 +335,33 @@ impl Walk for Scattering {
             return true;
         }
         let escape = mean(Rgb::select(clear, color, Rgb::ZERO)) / total;
-        let escapes = rng.uniform() < escape;
+        let escapes = escape >= 1.0 || !self.is_filled() && rng.uniform() < escape;
         self.weight = if escapes {
             Rgb::select(clear, self.weight / escape, Rgb::ZERO)
         } else {
+            self.reach *= 1.0 - escape;
             Rgb::select(clear, Rgb::ZERO, self.weight / (1.0 - escape))
         };
         escapes
+    }
+
+    #[inline]
+    fn until(&self) -> f32 {
+        self.until
+    }
+
+    fn arrive(&mut self, medium: &MediumRay, at: &Collision) {
+        if self.is_gray(at.segment) {
+            let (mu_t, mu_s) = medium.extinction(at.t);
+            let mu_n = self.gray_null(at, mu_t);
+            self.scatter_gray(medium, at, mu_t.x, mu_s.x, mu_n);
+            return;
+        }
+        let c = medium.coefficients(at.t);
+        let shares = self.shares(&c, null_coefficient(at.rate, c.mu_t), at.segment);
+        if shares.total > 0.0 && shares.total.is_finite() {
+            self.scatter(medium, at, &c, &shares);
+        }
     }
 
     fn collide(
@@ -293,7 +370,7 @@ impl Walk for Scattering {
         at: &Collision,
         rng: &mut PathRng,
     ) -> ControlFlow<()> {
-        if at.segment.gray && self.gather == Gather::Nothing {
+        if self.is_gray(at.segment) {
             return self.collide_gray(medium, at, rng);
         }
         let &Collision { t, rate, .. } = at;
@@ -302,65 +379,154 @@ impl Walk for Scattering {
             self.emission += self.weight * c.emission / rate;
         }
         let mu_n = null_coefficient(rate, c.mu_t);
-        let [absorb, scatter] = self.shares(&c, at.segment);
-        let color = self.throughput * self.weight;
-        let [a, s, n] = [absorb, scatter, mu_n].map(|mu| mean(color * mu));
-        let total = a + s + n;
+        let shares = self.shares(&c, mu_n, at.segment);
+        let Shares { absorb, scatter, null, total } = shares;
         if !(total > 0.0 && total.is_finite()) {
             // Nothing is left to follow; what is no number stays one and is counted.
             self.weight *= total;
             self.event = Event::Absorbed { t, real: false };
             return ControlFlow::Break(());
         }
-        let u = rng.uniform() * total;
-        if u < n {
-            self.weight *= mu_n / rate * (total / n);
+        let u = if self.is_filled() { 0.0 } else { rng.uniform() * total };
+        if u < null {
+            self.weight *= mu_n / rate * (total / null);
+            self.reach *= null / total;
             return ControlFlow::Continue(());
         }
-        if u < n + s && c.mu_s != Rgb::ZERO {
-            self.weight *= c.mu_s / rate * (total / s);
-            self.event = Event::Scattered { t, phase: medium.phase(t) };
+        if self.is_filled() {
+            return ControlFlow::Break(());
+        }
+        if u < null + scatter && self.scatter(medium, at, &c, &shares) {
             return ControlFlow::Break(());
         }
         if self.gather == Gather::Absorption {
-            self.emission += self.weight * c.emission / rate * (total / a);
+            self.emission += self.weight * c.emission / rate * (total / absorb);
         }
-        let real = u - n - s < mean(color * c.mu_a());
+        let real = u - null - scatter < mean(self.throughput * self.weight * c.mu_a());
         self.event = Event::Absorbed { t, real };
         ControlFlow::Break(())
     }
 }
 
 impl Scattering {
-    /// The same where all channels are: whatever the color, each event's probability is its share
-    /// of the collisions, and the weight is the albedo.
+    fn new(strategy: &Strategy, throughput: Rgb, until: f32) -> Self {
+        Self {
+            majorant: EmissionMajorant::of(strategy),
+            gather: Gather::of(strategy),
+            throughput,
+            weight: Rgb::ONE,
+            emission: Rgb::ZERO,
+            event: Event::Reached,
+            until,
+            reach: 1.0,
+            reach_ahead: 1.0,
+            pdf_null: 0.0,
+        }
+    }
+
+    /// What the walk has come to. What a filled one gathers counts for nothing: where emission is
+    /// gathered is up to the scattering walk alone.
+    fn flight(self, collisions: u32) -> Flight {
+        let emission = if self.is_filled() { Rgb::ZERO } else { self.emission };
+        let Self { event, weight, pdf_null, .. } = self;
+        Flight { event, weight, emission, pdf_null, collisions }
+    }
+
+    /// Whether its event is given.
+    #[inline]
+    fn is_filled(&self) -> bool {
+        self.until < f32::INFINITY
+    }
+
+    /// Whether one channel stands for all, and absorption for nothing.
+    #[inline]
+    fn is_gray(&self, segment: &Segment) -> bool {
+        segment.gray && self.gather == Gather::Nothing
+    }
+
+    /// Whether every collision is real: where the majorant is the extinction itself.
+    #[inline]
+    fn has_no_nulls(&self, segment: &Segment) -> bool {
+        segment.uniform && self.is_gray(segment)
+    }
+
+    /// [`Scattering::collide`] where all channels are the same: whatever the color, each event's
+    /// probability is its share of the collisions, and the weight is the albedo.
     fn collide_gray(
         &mut self,
         medium: &MediumRay,
         at: &Collision,
         rng: &mut PathRng,
     ) -> ControlFlow<()> {
+        if self.is_filled() && self.has_no_nulls(at.segment) {
+            // Crossed in closed form.
+            return ControlFlow::Continue(());
+        }
         let (mu_t, mu_s) = medium.extinction(at.t);
-        let mu_n = (at.rate - mu_t.x).max(0.0);
+        let mu_n = self.gray_null(at, mu_t);
         let total = mu_n + mu_t.x;
         if !total.is_finite() {
             self.weight *= total;
             self.event = Event::Absorbed { t: at.t, real: false };
             return ControlFlow::Break(());
         }
-        if rng.uniform() * total < mu_n {
+        let u = if self.is_filled() { 0.0 } else { rng.uniform() * total };
+        if u < mu_n {
+            self.reach *= mu_n / total;
             return ControlFlow::Continue(());
         }
-        if mu_s.x > 0.0 {
-            self.weight *= mu_s.x / mu_t.x;
-            self.event = Event::Scattered { t: at.t, phase: medium.phase(at.t) };
-        } else {
+        if !self.is_filled() && !self.scatter_gray(medium, at, mu_t.x, mu_s.x, mu_n) {
             self.event = Event::Absorbed { t: at.t, real: true };
         }
         ControlFlow::Break(())
     }
 
-    /// Coefficients in whose proportion a collision is an absorption or a scattering event.
+    #[inline]
+    fn gray_null(&self, at: &Collision, mu_t: Rgb) -> f32 {
+        if self.has_no_nulls(at.segment) { 0.0 } else { (at.rate - mu_t.x).max(0.0) }
+    }
+
+    /// Scatters in a gray segment; false where nothing does.
+    fn scatter_gray(
+        &mut self,
+        medium: &MediumRay,
+        at: &Collision,
+        mu_t: f32,
+        mu_s: f32,
+        mu_n: f32,
+    ) -> bool {
+        if mu_s <= 0.0 {
+            return false;
+        }
+        let clear = if self.has_no_nulls(at.segment) {
+            (-at.rate * (at.t - at.segment.t0)).exp()
+        } else {
+            1.0
+        };
+        self.pdf_null = self.reach * clear * at.rate * (mu_t / (mu_n + mu_t));
+        self.weight *= mu_s / mu_t;
+        self.event = Event::Scattered { t: at.t, phase: medium.phase(at.t) };
+        true
+    }
+
+    /// Scatters; false where nothing does.
+    fn scatter(
+        &mut self,
+        medium: &MediumRay,
+        at: &Collision,
+        c: &Coefficients,
+        shares: &Shares,
+    ) -> bool {
+        if c.mu_s == Rgb::ZERO || shares.scatter <= 0.0 {
+            return false;
+        }
+        self.pdf_null = self.reach * at.rate * (shares.scatter / shares.total);
+        self.weight *= c.mu_s / at.rate * (shares.total / shares.scatter);
+        self.event = Event::Scattered { t: at.t, phase: medium.phase(at.t) };
+        true
+    }
+
+    /// In which proportion a collision is an absorption, a scattering event or null.
     ///
     /// Where emission is not gathered by absorption, a real collision always scatters, and the
     /// weight carries the albedo: a path that lives on dimly beats one that mostly dies.
@@ -368,16 +534,17 @@ impl Scattering {
     /// Where absorption alone shows the emission, it happens as often as μ_a says, and often
     /// enough to show it: ε may be positive with little or no μ_a. The other events make up for
     /// that share by their weights, so that the floor absorbs nothing by itself.
-    fn shares(&self, c: &Coefficients, segment: &Segment) -> [Rgb; 2] {
-        if self.gather != Gather::Absorption {
-            return [Rgb::ZERO, c.mu_t];
-        }
-        let mu_a = c.mu_a();
-        if c.emission.max_element() > 0.0 {
-            [mu_a.max(Rgb::splat(EMISSION_FLOOR * segment.emission_rate)), c.mu_s]
+    fn shares(&self, c: &Coefficients, mu_n: Rgb, segment: &Segment) -> Shares {
+        let [absorb, scatter] = if self.gather != Gather::Absorption {
+            [Rgb::ZERO, c.mu_t]
+        } else if c.emission.max_element() > 0.0 {
+            [c.mu_a().max(Rgb::splat(EMISSION_FLOOR * segment.emission_rate)), c.mu_s]
         } else {
-            [mu_a, c.mu_s]
-        }
+            [c.mu_a(), c.mu_s]
+        };
+        let color = self.throughput * self.weight;
+        let [absorb, scatter, null] = [absorb, scatter, mu_n].map(|mu| mean(color * mu));
+        Shares { absorb, scatter, null, total: absorb + scatter + null }
     }
 }
 
@@ -395,9 +562,99 @@ mod tests {
             body::{Region, Substance, Volume},
             emission::Emission,
             field::{RgbField, ScalarField},
+            procedural::Noise,
             world::{Instance, World},
         },
     };
+
+    /// Every tentative collision of a walk that shares another's random numbers, and what there is.
+    struct Recorder {
+        until: f32,
+        /// Whether the walk drew a number at each collision.
+        draws: bool,
+        /// Where the other walk had its event by chance.
+        event: f32,
+        collisions: Vec<(f32, f32)>,
+    }
+
+    impl Walk for Recorder {
+        fn until(&self) -> f32 {
+            self.until
+        }
+        fn rate(&mut self, segment: &Segment) -> f32 {
+            segment.majorant
+        }
+        fn cross(&mut self, _: &MediumRay, _: &Segment, _: &mut PathRng) -> bool {
+            false
+        }
+        fn collide(&mut self, _: &MediumRay, at: &Collision, rng: &mut PathRng) -> ControlFlow<()> {
+            self.collisions.push((at.t, at.rate));
+            if self.draws {
+                rng.uniform();
+            }
+            if at.t == self.event { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        }
+        fn arrive(&mut self, _: &MediumRay, at: &Collision) {
+            self.collisions.push((at.t, at.rate));
+        }
+    }
+
+    /// Smoke with holes, as a world.
+    fn smoke(density: f32) -> World {
+        let substance = Substance {
+            density: ScalarField::Noise(Noise {
+                frequency: 2.0,
+                octaves: 3,
+                contrast: 2.0,
+                seed: 0,
+            }),
+            density_scale: Rgb::splat(density),
+            albedo: RgbField::Constant(Rgb::splat(0.8)),
+            g: 0.5,
+            emission: Emission::None,
+        };
+        let volume =
+            Volume::varying(Aabb::centered(Vec3A::ONE), substance, Vec3A::splat(0.25), None);
+        World::new(vec![Instance::new(Arc::new(volume), Affine3A::IDENTITY)])
+    }
+
+    /// What the walk says of its density, by chance or filled, is the product of its own
+    /// probabilities, Π (μ_n/μ̄) · μ_t, at the collisions it had, for thousands of paths.
+    #[test]
+    fn the_density_of_a_path_is_the_product_along_it() {
+        let strategy = Preset::Full.strategy();
+        let mut checked = [0, 0];
+        for (density, i) in [1.0, 4.0, 16.0].iter().flat_map(|d| (0..2000).map(move |i| (*d, i))) {
+            let world = smoke(density);
+            let mut rng = PathRng::new(i, UVec2::ZERO, 0);
+            let target = 0.6 * Vec3A::new(rng.uniform(), rng.uniform(), rng.uniform());
+            let origin = Vec3A::new(-3.0, 0.2, 0.1);
+            let ray = Ray::new(origin, (target - origin).normalize());
+            let along = || world.along(ray, f32::INFINITY);
+            let filled = i % 2 == 1;
+            let until = if filled { 2.0 + 2.0 * rng.uniform() } else { f32::INFINITY };
+            let mut again = rng.clone();
+            let flight = if filled {
+                fill(along(), &strategy, Rgb::ONE, until, &mut rng)
+            } else {
+                let first = rng.exponential();
+                scatter(along(), &strategy, Rgb::ONE, first, &mut rng)
+            };
+            let Event::Scattered { t, .. } = flight.event else { continue };
+            let mut recorder = Recorder { until, draws: !filled, event: t, collisions: vec![] };
+            let first = again.exponential();
+            track(along(), first, &mut again, &mut recorder);
+            let mu_t = |t: f32| world.matter_at(ray.at(t)).map_or(0.0, |m| m.mu_t.x);
+            let (last, before) = recorder.collisions.split_last().unwrap();
+            assert_eq!(last.0, t);
+            let product = before.iter().fold(mu_t(t), |p, &(t, rate)| p * (1.0 - mu_t(t) / rate));
+            let error = (flight.pdf_null - product).abs();
+            assert!(error < 2e-3 * product + 1e-6, "{}: {product}, said {}", t, flight.pdf_null);
+            assert!((flight.weight.x - 0.8).abs() < 1e-5);
+            checked[usize::from(filled)] += 1;
+        }
+        assert!(checked[0] > 1000 && checked[1] > 1000, "{checked:?}");
+    }
 
     /// A draw of zero distance collides in however thin a medium.
     #[test]
@@ -416,14 +673,8 @@ mod tests {
         let world = World::new(vec![Instance::new(volume, Affine3A::IDENTITY)]);
         let mut medium = world.along(Ray::new(-3.0 * Vec3A::X, Vec3A::X), f32::INFINITY);
         let segment = medium.next_segment().unwrap();
-        let mut walk = Scattering {
-            majorant: EmissionMajorant::of(&Preset::Baseline.strategy()),
-            gather: Gather::EveryCollision,
-            throughput: Rgb::ONE,
-            weight: Rgb::ONE,
-            emission: Rgb::ZERO,
-            event: Event::Reached,
-        };
+        let strategy = Strategy { emission_decoupling: true, ..Preset::Baseline.strategy() };
+        let mut walk = Scattering::new(&strategy, Rgb::ONE, f32::INFINITY);
         let at = Collision { t: 3.0, rate: 1e-30, segment: &segment };
         let goes_on = walk.collide(&medium, &at, &mut PathRng::new(0, UVec2::ZERO, 0));
         assert!(goes_on.is_continue());

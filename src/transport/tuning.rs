@@ -10,7 +10,7 @@ use glam::{UVec2, Vec2};
 use super::{
     emission::{Errand, Gatherer},
     observer::Nobody,
-    path,
+    path::{self, Aids},
     scene::Scene,
 };
 use crate::{
@@ -165,9 +165,9 @@ impl<'s> Site<'s> {
     /// What a path along ray `number` brings, and its steps.
     fn path(&self, looks: f32, number: u32) -> (f64, u32) {
         let mut rng = PathRng::new(SEED, self.pixel, u32::MAX - 8 - number);
-        let gatherer = Gatherer::optimal(looks);
+        let aids = Aids { gatherer: &Gatherer::optimal(looks), probes: None };
         let ray = self.rays[number as usize];
-        let sample = path::trace(self.scene, &gatherer, ray, &mut rng, &mut Nobody);
+        let sample = path::trace(self.scene, aids, ray, &mut rng, &mut Nobody);
         (f64::from(luminance(sample.beauty())), sample.tracking_steps)
     }
 }
@@ -220,7 +220,7 @@ mod tests {
     /// Variance of independent samples times their cost, over the whole film.
     fn variance_times_cost(scene: &Scene, looks: f32) -> f64 {
         const SAMPLES: u32 = 64;
-        let gatherer = Gatherer::optimal(looks);
+        let aids = Aids { gatherer: &Gatherer::optimal(looks), probes: None };
         let (mut variance, mut steps) = (0.0, 0.0);
         for i in 0..SIZE.element_product() {
             let pixel = UVec2::new(i % SIZE.x, i / SIZE.x);
@@ -229,7 +229,7 @@ mod tests {
                 let mut rng = PathRng::new(0, pixel, sample);
                 let offset = Vec2::new(rng.uniform(), rng.uniform());
                 let ray = scene.camera.ray(SIZE, pixel, offset);
-                let sample = path::trace(scene, &gatherer, ray, &mut rng, &mut Nobody);
+                let sample = path::trace(scene, aids, ray, &mut rng, &mut Nobody);
                 let value = f64::from(luminance(sample.beauty()));
                 (sum, squares) = (sum + value, squares + value * value);
                 steps += f64::from(sample.tracking_steps);

@@ -6,6 +6,7 @@ use glam::{Vec2, Vec3A};
 use crate::{
     light::Receiver,
     math::{PathRng, Ray, Rgb, Slot},
+    sampling::halo::Halo,
     surface::{Bsdf, Hit},
     volume::phase::PhaseMix,
 };
@@ -74,6 +75,25 @@ impl Vertex {
             weight: value / pdf_solid_angle,
             pdf_solid_angle,
         })
+    }
+
+    /// [`Vertex::sample`], or with probability `share` a direction of `halo`; the weight is over the
+    /// mixture of both. The density is still that of [`Vertex::sample`]: MIS with looks at lights
+    /// is by that alone, and as those do the same the weights of both sum to one.
+    pub fn sample_towards(&self, halo: &Halo, share: f32, rng: &mut PathRng) -> Option<Turn> {
+        let pick = rng.at(Slot::TurnPick);
+        let u = Vec2::new(rng.at(Slot::TurnX), rng.at(Slot::TurnY));
+        let direction = match &self.kind {
+            _ if pick < share => halo.sample(u),
+            Kind::Volume { phase, forward } => {
+                phase.sample(*forward, (pick - share) / (1.0 - share), u)
+            }
+            Kind::Surface { bsdf, .. } => bsdf.sample(u)?,
+        };
+        let (value, pdf_solid_angle) = self.eval(direction);
+        let mixture = (1.0 - share) * pdf_solid_angle + share * halo.pdf(direction);
+        let met = mixture > 0.0 && value.max_element() > 0.0;
+        met.then(|| Turn { direction, weight: value / mixture, pdf_solid_angle })
     }
 
     /// The ray that leaves along `direction` without meeting the surface it starts on.

@@ -82,6 +82,13 @@ impl Substance {
         Coefficients { mu_t, mu_s, emission }
     }
 
+    /// Whether it may scatter anywhere, as far as can be told without looking.
+    pub fn scatters(&self) -> bool {
+        let dark = matches!(self.albedo, RgbField::Constant(albedo) if albedo.max_element() <= 0.0);
+        let clear = matches!(self.density, ScalarField::Constant(density) if density <= 0.0);
+        !dark && !clear && self.density_scale.max_element() > 0.0
+    }
+
     /// Whether μ_t and μ_s are the same in all channels, whatever the emission.
     #[inline]
     pub fn is_gray(&self) -> bool {

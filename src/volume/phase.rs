@@ -57,6 +57,15 @@ impl PhaseMix {
         }
     }
 
+    /// Mean cosine of the angle it scatters by.
+    pub fn mean_cosine(&self) -> f32 {
+        let (sum, total) = self.lobes.iter().fold((0.0, 0.0), |(sum, total), lobe| {
+            let mu_s = mean(lobe.mu_s);
+            (sum + mu_s * lobe.g, total + mu_s)
+        });
+        if total > 0.0 { sum / total } else { 0.0 }
+    }
+
     /// Value per channel (1/sr) and the density that [`PhaseMix::sample`] draws with, for unit
     /// directions of propagation before and after.
     #[inline]

@@ -142,11 +142,38 @@ impl World {
 
     /// ε at a point; `along` is any unit direction.
     pub fn emission_at(&self, point: Vec3A, along: Vec3A) -> Rgb {
-        let reach = point.abs().max_element().max(1.0) * (8.0 * f32::EPSILON);
-        let mut medium = self.along(Ray::new(point, along), reach);
+        let mut medium = self.around(point, along);
         match medium.next_segment() {
             Some(segment) => medium.emission(segment.t0),
             None => Rgb::ZERO,
         }
     }
+
+    /// What extinguishes and scatters at a point; `None` where there is nothing.
+    pub fn matter_at(&self, point: Vec3A) -> Option<Matter> {
+        let mut medium = self.around(point, Vec3A::X);
+        let segment = medium.next_segment()?;
+        let (mu_t, mu_s) = medium.extinction(segment.t0);
+        let g = medium.phase(segment.t0).mean_cosine();
+        Some(Matter { majorant: segment.majorant, mu_t, mu_s, g })
+    }
+
+    /// The medium along a ray so short that it is a point.
+    fn around(&self, point: Vec3A, along: Vec3A) -> MediumRay<'_> {
+        let reach = point.abs().max_element().max(1.0) * (8.0 * f32::EPSILON);
+        self.along(Ray::new(point, along), reach)
+    }
+}
+
+/// What extinguishes and scatters at a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Matter {
+    /// Upper bound of μ_t around it, 1/length.
+    pub majorant: f32,
+    /// Extinction, 1/length.
+    pub mu_t: Rgb,
+    /// Scattering, 1/length.
+    pub mu_s: Rgb,
+    /// Mean cosine of the scattering.
+    pub g: f32,
 }

@@ -15,7 +15,7 @@ use flambeau::{
     scene::{self, Overrides, VolumeCache},
     transport::{
         Frame, PathSample, PixelSampler, Scene,
-        strategy::{Advanced, BoostMode, LightSelection, NeeEvaluation, Strategy},
+        strategy::{Advanced, BoostMode, Distance, LightSelection, NeeEvaluation, Strategy},
     },
 };
 use glam::UVec2;
@@ -67,15 +67,23 @@ pub fn with_strategy(scene: &Scene, strategy: Strategy) -> Scene {
 
 /// Every combination of the toggles.
 pub fn all_strategies() -> Vec<Strategy> {
-    (0..16)
-        .map(|bits| Strategy {
-            emission_decoupling: bits & 1 != 0,
-            emission_ratio_tracking: bits & 2 != 0,
-            majorant_boost: bits & 4 != 0,
-            nee: bits & 8 != 0,
-            ..Strategy::default()
-        })
-        .collect()
+    (0..32).map(toggles).collect()
+}
+
+/// Half of them, in which every combination of any four occurs.
+pub fn half_of_strategies() -> Vec<Strategy> {
+    (0..32_u32).filter(|bits| bits.count_ones() % 2 == 1).map(toggles).collect()
+}
+
+fn toggles(bits: u32) -> Strategy {
+    Strategy {
+        emission_decoupling: bits & 1 != 0,
+        emission_ratio_tracking: bits & 2 != 0,
+        majorant_boost: bits & 4 != 0,
+        nee: bits & 8 != 0,
+        probe_mis: bits & 16 != 0,
+        ..Strategy::default()
+    }
 }
 
 /// Every strategy on, with each boost mode but the default.
@@ -102,6 +110,10 @@ pub fn finer() -> [Advanced; 8] {
                 LightSelection::Hierarchy
             },
             low_discrepancy: a ^ b ^ c,
+            distance: if a ^ b { Distance::Probes } else { Distance::Mis },
+            equiangular: !c,
+            guide_directions: !(a ^ c),
+            guide_all_vertices: b ^ c,
             ..Advanced::default()
         }
     })
@@ -111,7 +123,7 @@ pub fn finer() -> [Advanced; 8] {
 /// definition once: ratio tracking overrides decoupling, and a key without its toggle says nothing.
 pub fn every_setting() -> Vec<Strategy> {
     let mut settings: Vec<Strategy> = Vec::new();
-    for toggles in all_strategies() {
+    for toggles in half_of_strategies() {
         for advanced in finer() {
             let setting = effective(Strategy { advanced, ..toggles });
             if !settings.contains(&setting) {
@@ -143,6 +155,12 @@ fn effective(mut strategy: Strategy) -> Strategy {
     if !strategy.nee {
         advanced.nee_evaluation = plain.nee_evaluation;
     }
+    if !strategy.probe_mis {
+        advanced.distance = plain.distance;
+        advanced.equiangular = plain.equiangular;
+        advanced.guide_directions = plain.guide_directions;
+        advanced.guide_all_vertices = plain.guide_all_vertices;
+    }
     strategy
 }
 
@@ -151,8 +169,20 @@ pub fn full_name(strategy: &Strategy) -> String {
     let Advanced { boost_mode, boost_amount, nee_evaluation, light_selection, .. } =
         strategy.advanced;
     let spread = if strategy.advanced.low_discrepancy { "even" } else { "random" };
-    let name = name(strategy);
-    format!("{name} {boost_mode:?} {boost_amount} {nee_evaluation:?} {light_selection:?} {spread}")
+    let on = |flag: bool, name: &'static str| if flag { name } else { "" };
+    let Advanced { distance, equiangular, guide_directions, guide_all_vertices, .. } =
+        strategy.advanced;
+    let guides = [
+        on(equiangular, " angles"),
+        on(guide_directions, " directions"),
+        on(guide_all_vertices, " bounces"),
+    ];
+    format!(
+        "{} {boost_mode:?} {boost_amount} {nee_evaluation:?} {light_selection:?} {spread} \
+         {distance:?}{}",
+        name(strategy),
+        guides.concat()
+    )
 }
 
 /// A short name of a strategy for messages.
@@ -163,6 +193,7 @@ pub fn name(strategy: &Strategy) -> String {
         on(strategy.emission_ratio_tracking, 'r'),
         on(strategy.majorant_boost, 'b'),
         on(strategy.nee, 'n'),
+        on(strategy.probe_mis, 'p'),
     ]
     .iter()
     .collect()

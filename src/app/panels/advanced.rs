@@ -15,6 +15,8 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
     boost(ui, strategy, opened, &mut edit);
     ui.add_space(space::TIGHT);
     fire_as_light(ui, strategy, &mut edit);
+    ui.add_space(space::TIGHT);
+    guided_scattering(ui, strategy, opened, &mut edit);
     let spread = &mut strategy.advanced.low_discrepancy;
     let help = key_help("strategy.advanced.low_discrepancy");
     if ui.checkbox(spread, "Spread samples").on_hover_text(help).changed() {
@@ -67,6 +69,54 @@ fn fire_as_light(ui: &mut Ui, strategy: &mut Strategy, edit: &mut Option<&'stati
     let selection = &mut advanced.light_selection;
     if choice(ui, "Choose lights", "strategy.advanced.light_selection", selection) {
         *edit = Some("choose lights");
+    }
+}
+
+/// The choices of the light probes.
+fn guided_scattering(
+    ui: &mut Ui,
+    strategy: &mut Strategy,
+    opened: Advanced,
+    edit: &mut Option<&'static str>,
+) {
+    let advanced = &mut strategy.advanced;
+    ui.add_enabled_ui(strategy.probe_mis, |ui| {
+        if choice(ui, "Distance", "strategy.advanced.distance", &mut advanced.distance) {
+            *edit = Some("distance");
+        }
+        let mut count = advanced.probe_count as f32;
+        if probe_count(opened).show(ui, &mut count) {
+            advanced.probe_count = count as u32;
+            *edit = Some("probe count");
+        }
+        for (value, name, key) in [
+            (&mut advanced.equiangular, "Equal angles", "strategy.advanced.equiangular"),
+            (
+                &mut advanced.guide_directions,
+                "Guide directions",
+                "strategy.advanced.guide_directions",
+            ),
+            (
+                &mut advanced.guide_all_vertices,
+                "Guide bounces",
+                "strategy.advanced.guide_all_vertices",
+            ),
+        ] {
+            if ui.checkbox(value, name).on_hover_text(key_help(key)).changed() {
+                *edit = Some(name);
+            }
+        }
+    });
+}
+
+fn probe_count(opened: Advanced) -> Number<'static> {
+    Number {
+        name: "Probes",
+        key: "strategy.advanced.probe_count",
+        soft: 256.0..=65536.0,
+        logarithmic: true,
+        unit: "",
+        reset: opened.probe_count as f32,
     }
 }
 

@@ -10,7 +10,7 @@ use crate::app::widgets::{capitalized, key_help, key_summary, row, segments};
 use crate::transport::strategy::{Preset, Strategy};
 
 /// A toggle with its command, which knows its name and key, and its key in the scene file.
-const TOGGLES: [(Toggle, Command, &str); 4] = [
+const TOGGLES: [(Toggle, Command, &str); 5] = [
     (Toggle::EmissionDecoupling, Command::EmissionDecoupling, "strategy.emission_decoupling"),
     (
         Toggle::EmissionRatioTracking,
@@ -19,6 +19,7 @@ const TOGGLES: [(Toggle, Command, &str); 4] = [
     ),
     (Toggle::MajorantBoost, Command::MajorantBoost, "strategy.majorant_boost"),
     (Toggle::FireAsLight, Command::FireAsLight, "strategy.nee"),
+    (Toggle::Probes, Command::Probes, "strategy.probe_mis"),
 ];
 
 /// The switch of `toggle` in `strategy`.
@@ -28,6 +29,7 @@ pub fn switch(strategy: &mut Strategy, toggle: Toggle) -> &mut bool {
         Toggle::EmissionRatioTracking => &mut strategy.emission_ratio_tracking,
         Toggle::MajorantBoost => &mut strategy.majorant_boost,
         Toggle::FireAsLight => &mut strategy.nee,
+        Toggle::Probes => &mut strategy.probe_mis,
     }
 }
 

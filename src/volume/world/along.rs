@@ -64,6 +64,13 @@ impl<'w> MediumRay<'w> {
         Self { world, ray, ahead, inside: SmallVec::new(), from: 0.0, t: 0.0 }
     }
 
+    /// Where the first volume begins and the last one ends, before the walk has begun; `None` where
+    /// there is none. Either may be infinite in a medium without borders.
+    pub fn extent(&self) -> Option<(f32, f32)> {
+        let first = self.ahead.last()?.t0;
+        Some((first, self.ahead.iter().fold(first, |end, entry| end.max(entry.t1))))
+    }
+
     /// The next stretch of the ray with something in it.
     #[inline]
     pub fn next_segment(&mut self) -> Option<Segment> {

@@ -77,6 +77,11 @@ impl Instance {
 }
 
 impl World {
+    /// Whether anything glows at all.
+    pub fn glows(&self) -> bool {
+        self.emissive.unsampled || !self.emissive.indices.is_empty()
+    }
+
     /// Whether anything glows where no sampled point lies: media without borders.
     pub fn glows_beyond_lights(&self) -> bool {
         self.emissive.unsampled

@@ -1,0 +1,253 @@
+//! Probes: spheres spread over the medium that know the light around them and say where along a ray
+//! scattering pays (Huang et al. 2021, section 3).
+//!
+//! They fill the leaves of an octree that is finer where more light is scattered, so that each
+//! stands for about as much of it. A probe keeps directions its light comes from instead of a score
+//! for one camera; the score towards any ray is read from them, μ_s ∫ L ρ dω, and weighed with the
+//! transmittance on the way. So they serve every vertex, and stay as they are when the camera moves.
+//!
+//! They guide and no more: whatever they say, the picture's mean stays, as long as no sample
+//! changes what guides it.
+
+mod halo;
+mod line;
+mod octree;
+mod probe;
+
+use glam::{UVec2, Vec3A};
+use rayon::prelude::*;
+
+use super::{
+    emission::Gatherer,
+    scene::Scene,
+    strategy::{Distance, Strategy},
+};
+use crate::{
+    math::{Aabb, PathRng, Ray, mean},
+    volume::{medium::Segment, world::MediumRay},
+};
+pub use line::Line;
+use line::{LineBuilder, Stretch};
+use octree::{Octree, child_of};
+use probe::Probe;
+
+/// Levels that are cut wherever a volume may scatter.
+const FIRST_LEVELS: u32 = 3;
+/// Light outside of the octree, relative to its mean radiance inside.
+const OUTSIDE: f32 = 0.05;
+/// Share of the directions that go towards the glow around the lights if all of their light is
+/// scattered.
+const MOST_HALO: f32 = 0.5;
+/// Transmittance below which a line asks the probes no more.
+const DARK: f32 = 1e-4;
+/// Fixed, with numbers that no picture is likely to use.
+const SEED: u64 = 0x7072_6f62_6573_2e2e;
+
+/// The probes of a scene.
+#[derive(Clone, Debug)]
+pub struct Probes {
+    octree: Octree,
+    /// By node; those of inner nodes are what their leaves began as.
+    probes: Vec<Probe>,
+    /// Radiance scattered outside of the octree per unit of μ_s.
+    outside: f32,
+    /// Mean cosine of what scatters most.
+    mean_cosine: f32,
+    /// Share of the lights' light that is scattered at least once.
+    scattered: f32,
+}
+
+impl Probes {
+    /// The probes for `scene`, if its strategy asks for any and anything scatters. The same scene
+    /// always gets the same ones.
+    pub fn new(scene: &Scene) -> Option<Self> {
+        let Strategy { probe_mis, advanced, .. } = scene.strategy;
+        if !probe_mis || advanced.distance == Distance::Null {
+            return None;
+        }
+        let (bounds, scattering) = support(scene)?;
+        let octree = Octree::new(&bounds);
+        let cube = octree.bounds();
+        let builder = Builder { scene, gatherer: Gatherer::at_a_glance(), scattering };
+        let first = builder.probe(0, &cube);
+        let scattered = halo::scattered_share(scene);
+        let mut probes =
+            Self { octree, probes: vec![first], outside: 0.0, mean_cosine: 0.0, scattered };
+        probes.refine(&builder, advanced.probe_count);
+        probes.outside = OUTSIDE * probes.mean_radiance();
+        probes.mean_cosine = probes.weighted_cosine();
+        Some(probes)
+    }
+
+    /// Cuts leaves level by level where they stand for more than their part of the light.
+    fn refine(&mut self, builder: &Builder<'_>, count: u32) {
+        let mut level = vec![(0, self.octree.bounds())];
+        let mut power: f32 = self.power_of(&level[0]);
+        for depth in 0..octree::DEEPEST {
+            let least = 4.0 * power / count as f32;
+            let split: Vec<(u32, Aabb)> = level
+                .iter()
+                .filter(|leaf| {
+                    let first = depth < FIRST_LEVELS && builder.may_scatter(&leaf.1);
+                    first || self.power_of(leaf) > least
+                })
+                .copied()
+                .collect();
+            if split.is_empty() || self.octree.len() + 8 * split.len() > 2 * count as usize {
+                break;
+            }
+            level = split.iter().flat_map(|leaf| self.split(leaf)).collect();
+            let probes: Vec<Probe> =
+                level.par_iter().map(|(node, bounds)| builder.probe(*node, bounds)).collect();
+            self.probes.extend(probes);
+            let sum = |leaves: &[(u32, Aabb)]| leaves.iter().map(|l| self.power_of(l)).sum::<f32>();
+            power += sum(&level) - sum(&split);
+        }
+    }
+
+    /// The children of a leaf.
+    fn split(&mut self, leaf: &(u32, Aabb)) -> [(u32, Aabb); 8] {
+        let first = self.octree.split(leaf.0);
+        std::array::from_fn(|i| (first + i as u32, child_of(&leaf.1, i as u32)))
+    }
+
+    /// Power scattered in a leaf.
+    fn power_of(&self, (node, bounds): &(u32, Aabb)) -> f32 {
+        self.probes[*node as usize].power() * bounds.size().element_product()
+    }
+
+    /// Number of probes.
+    pub fn len(&self) -> usize {
+        self.probes.len()
+    }
+
+    /// Whether there are none, which does not happen.
+    pub fn is_empty(&self) -> bool {
+        self.probes.is_empty()
+    }
+
+    /// Mean cosine of the scattering, as the probes see it.
+    pub fn mean_cosine(&self) -> f32 {
+        self.mean_cosine
+    }
+
+    /// Share of the directions after scattering that are best drawn from the glow around a light.
+    pub fn share_of_halo(&self) -> f32 {
+        MOST_HALO * self.scattered
+    }
+
+    fn weighted_cosine(&self) -> f32 {
+        let power: f32 = self.probes.iter().map(Probe::power).sum();
+        let sum: f32 = self.probes.iter().map(|probe| probe.power() * probe.g()).sum();
+        let mean = sum / power;
+        if mean.is_finite() { mean } else { self.probes[0].g() }
+    }
+
+    fn mean_radiance(&self) -> f32 {
+        let sum: f32 = self.probes.iter().map(Probe::radiance).filter(|r| r.is_finite()).sum();
+        sum / self.probes.len() as f32
+    }
+
+    /// The density along `ray` whose medium is given; `None` where nothing scatters.
+    pub fn along(&self, mut medium: MediumRay, ray: &Ray) -> Option<Line> {
+        let mut line = LineBuilder::new();
+        let mut place = self.octree.locate(ray, 0.0);
+        let mut radiance = self.radiance(place.leaf, ray);
+        while let Some(segment) = medium.next_segment() {
+            let mut t = segment.t0;
+            if segment.majorant <= 0.0 {
+                continue;
+            }
+            while t < segment.t1 {
+                let dark = line.transmittance() < DARK;
+                if t >= place.t_end && !dark {
+                    place = self.octree.locate(ray, t);
+                    radiance = self.radiance(place.leaf, ray);
+                }
+                let t1 = if dark { segment.t1 } else { segment.t1.min(place.t_end) };
+                line.add(&self.stretch(&medium, &segment, t, t1, place.leaf, radiance));
+                t = t1;
+            }
+        }
+        line.finish()
+    }
+
+    fn radiance(&self, leaf: Option<u32>, ray: &Ray) -> f32 {
+        leaf.map_or(self.outside, |leaf| self.probes[leaf as usize].in_scattered(ray.direction))
+    }
+
+    /// The part of a segment between two parameters, inside of a leaf.
+    fn stretch(
+        &self,
+        medium: &MediumRay,
+        segment: &Segment,
+        t0: f32,
+        t1: f32,
+        leaf: Option<u32>,
+        radiance: f32,
+    ) -> Stretch {
+        let majorant = segment.majorant;
+        let (mu_t, mu_s) = if segment.uniform {
+            let c = medium.coefficients(t0);
+            // The clearest channel that is not clear sees farthest.
+            let clear = c.mu_t.cmpeq(Vec3A::ZERO);
+            let least = Vec3A::select(clear, Vec3A::splat(majorant), c.mu_t).min_element();
+            (least, mean(c.mu_s))
+        } else {
+            let (density, albedo) = leaf.map_or((0.5, 0.5), |leaf| {
+                let probe = &self.probes[leaf as usize];
+                (probe.density, probe.albedo)
+            });
+            (majorant * density, majorant * density * albedo)
+        };
+        Stretch { t0, t1, mu_t, majorant, scattered: mu_s * radiance }
+    }
+}
+
+/// What probes are made from.
+struct Builder<'s> {
+    scene: &'s Scene,
+    /// Looks at fire.
+    gatherer: Gatherer,
+    /// Boxes of the volumes that may scatter.
+    scattering: Vec<Aabb>,
+}
+
+impl Builder<'_> {
+    /// The probe of a node.
+    fn probe(&self, node: u32, bounds: &Aabb) -> Probe {
+        let mut rng = PathRng::new(SEED, UVec2::new(node, 0), 0);
+        Probe::new(self.scene, &self.gatherer, bounds, &mut rng)
+    }
+
+    fn may_scatter(&self, bounds: &Aabb) -> bool {
+        let apart = |b: &Aabb| b.min.cmpgt(bounds.max).any() || b.max.cmplt(bounds.min).any();
+        self.scattering.iter().any(|volume| !apart(volume))
+    }
+}
+
+/// A box around what scatters, and the boxes of its volumes; `None` where nothing does. Of a fog
+/// that never ends, where it matters: around all else there is.
+fn support(scene: &Scene) -> Option<(Aabb, Vec<Aabb>)> {
+    let scattering: Vec<Aabb> = scene
+        .world
+        .instances()
+        .iter()
+        .filter(|instance| instance.volume().substance().scatters())
+        .map(|instance| *instance.bounds())
+        .collect();
+    let finite = |b: &Aabb| b.min.is_finite() && b.max.is_finite() && !b.is_empty();
+    let mut all = scattering.iter().filter(|b| finite(b)).fold(Aabb::EMPTY, |a, b| a.union(b));
+    if !scattering.iter().all(finite) {
+        let camera = scene.camera.position();
+        all = all.union(&Aabb::new(camera, camera));
+        let lights = scene.lights.emitters(&scene.world);
+        all = lights.iter().fold(all, |a, light| a.union(&light.bounds));
+        let bounded = scene.surfaces.iter().filter_map(|surface| surface.shape.bounds());
+        all = bounded.fold(all, |a, b| a.union(&b));
+        let margin = Vec3A::splat((0.5 * all.diagonal()).max(1.0));
+        all = Aabb::new(all.min - margin, all.max + margin);
+    }
+    let usable = !scattering.is_empty() && finite(&all) && all.diagonal() > 0.0;
+    (usable && all.size().max_element().is_finite()).then_some((all, scattering))
+}

@@ -1,0 +1,66 @@
+//! How much of the lights' light the medium scatters, which is what glows around them.
+
+use std::f32::consts::TAU;
+
+use glam::{UVec2, Vec3A};
+
+use crate::{
+    light::Emitter,
+    math::{PathRng, Ray, Rgb, mean},
+    sampling::warp::spherical,
+    surface,
+    transport::{
+        scene::Scene,
+        strategy::Preset,
+        tracking::{self, Event},
+    },
+};
+
+/// Rays that are followed from the lights.
+const RAYS: u32 = 256;
+
+/// The share of the light of all lights that are somewhere which is scattered at least once, the
+/// albedo included; 0 where there are none.
+pub(super) fn scattered_share(scene: &Scene) -> f32 {
+    let emitters = scene.lights.emitters(&scene.world);
+    let intensity = |emitter: &Emitter| f64::from(emitter.intensity.clamp(0.0, f32::MAX));
+    let total: f64 = emitters.iter().map(intensity).sum();
+    if total <= 0.0 {
+        return 0.0;
+    }
+    let (mut chosen, mut passed) = (0, 0.0);
+    let scattered: f32 = (0..RAYS)
+        .map(|i| {
+            let wanted = (f64::from(i) + 0.5) / f64::from(RAYS) * total;
+            while chosen + 1 < emitters.len() && passed + intensity(&emitters[chosen]) < wanted {
+                passed += intensity(&emitters[chosen]);
+                chosen += 1;
+            }
+            scattered_of(scene, &emitters[chosen], &mut PathRng::new(super::SEED, UVec2::Y, i))
+        })
+        .sum();
+    let share = scattered / RAYS as f32;
+    if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 }
+}
+
+/// Of one ray from a light.
+fn scattered_of(scene: &Scene, emitter: &Emitter, rng: &mut PathRng) -> f32 {
+    let u = Vec3A::new(rng.uniform(), rng.uniform(), rng.uniform());
+    let origin = emitter.bounds.min + u * emitter.bounds.size();
+    let direction = match emitter.cone {
+        Some((axis, _)) => axis,
+        None => spherical(1.0 - 2.0 * rng.uniform(), TAU * rng.uniform()),
+    };
+    // Its own surface does not end its light.
+    let size = emitter.bounds.diagonal();
+    let outside = Ray::new(origin + size * direction, direction);
+    let end = surface::intersect(&scene.surfaces, &outside);
+    let t_max = end.map_or(f32::INFINITY, |end| size + end.hit.t);
+    let medium = scene.world.along(Ray::new(origin, direction), t_max);
+    let strategy = Preset::Full.strategy();
+    let flight = tracking::scatter(medium, &strategy, Rgb::ONE, rng.exponential(), rng);
+    match flight.event {
+        Event::Scattered { .. } => mean(flight.weight),
+        _ => 0.0,
+    }
+}

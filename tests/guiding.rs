@@ -1,0 +1,191 @@
+//! Scattering guided by probes, by equal angles and towards glow: whatever the guide, one picture.
+
+mod common;
+
+use common::{Verdicts, build, full_name, half_of_strategies, measure, with_strategy};
+use flambeau::transport::{
+    Scene,
+    probes::Probes,
+    strategy::{Advanced, Distance, Preset, Strategy},
+};
+
+/// A lamp and a small fire inside of uneven smoke, with haze all around; `SCALE` is its density.
+const EMBEDDED: &str = r#"
+    [camera]
+    position = [0, -4, 0.5]
+    target = [0, 0, 0]
+    fov_x = 34
+    [[volume]]
+    shape = "noise"
+    half_size = [1.0, 0.9, 0.8]
+    rotate = [0, 0, 20]
+    frequency = 1.5
+    contrast = 2.0
+    density = { scale = SCALE }
+    albedo = [0.9, 0.8, 0.7]
+    phase = { g = 0.6 }
+    [[volume]]
+    shape = "sphere"
+    radius = 0.25
+    translate = [-0.4, 0.1, -0.2]
+    density = { scale = 1.0 }
+    albedo = 0.2
+    emission = { mode = "source", le = [1.0, 0.5, 0.2] }
+    [[surface]]
+    shape = "sphere"
+    center = [0.35, 0.1, 0.2]
+    radius = 0.12
+    material = { type = "black" }
+    emission = [2.0, 2.5, 3.0]
+"#;
+
+const HAZE: &str = r#"
+    [[volume]]
+    shape = "everywhere"
+    density = { scale = 0.03 }
+    albedo = 0.9
+"#;
+
+const FLOOR: &str = r#"
+    [[surface]]
+    shape = "plane"
+    point = [0, 0, -0.9]
+    normal = [0, 0, 1]
+    half_size = 4.0
+    material = { type = "diffuse", reflectance = 0.5 }
+"#;
+
+/// Every way to choose a distance with all other guides on and with none.
+fn few_guides() -> Vec<Strategy> {
+    let all = |a: &Advanced| a.equiangular && a.guide_directions && a.guide_all_vertices;
+    let none = |a: &Advanced| !a.equiangular && !a.guide_directions && !a.guide_all_vertices;
+    every_guide().into_iter().filter(|s| all(&s.advanced) || none(&s.advanced)).collect()
+}
+
+/// Every way to choose a distance with every other guide on and off.
+fn every_guide() -> Vec<Strategy> {
+    let mut all = Vec::new();
+    for distance in [Distance::Mis, Distance::Probes] {
+        for bits in 0..8_u32 {
+            let advanced = Advanced {
+                distance,
+                equiangular: bits & 1 != 0,
+                guide_directions: bits & 2 != 0,
+                guide_all_vertices: bits & 4 != 0,
+                ..Advanced::default()
+            };
+            all.push(Strategy { advanced, ..Preset::Full.strategy() });
+        }
+    }
+    all
+}
+
+fn guides_agree(text: &str, settings: Vec<Strategy>, paths: u32) {
+    let scene = build(text);
+    let unguided = Strategy { probe_mis: false, ..Preset::Full.strategy() };
+    let reference = measure(&with_strategy(&scene, unguided), 4 * paths);
+    let mut verdicts = Verdicts::default();
+    for strategy in settings {
+        let estimate = measure(&with_strategy(&scene, strategy), paths);
+        let label = full_name(&strategy);
+        for channel in 0..3 {
+            verdicts.check_equal(&label, &estimate, &reference, channel);
+            let weak = estimate.error(channel) > common::POWER * estimate.mean[channel];
+            assert!(!weak, "{label}: too weak {estimate:?}");
+        }
+    }
+    verdicts.finish();
+}
+
+#[test]
+fn guides_agree_in_thin_smoke() {
+    guides_agree(&EMBEDDED.replace("SCALE", "0.4"), every_guide(), 400_000);
+}
+
+/// Probes alone have rare bright samples in thick smoke, which is what MIS is there for.
+#[test]
+fn guides_agree_in_thick_smoke() {
+    let shared = |strategy: &Strategy| strategy.advanced.distance == Distance::Mis;
+    let settings = every_guide().into_iter().filter(shared).step_by(3).collect();
+    guides_agree(&EMBEDDED.replace("SCALE", "5.0"), settings, 500_000);
+}
+
+/// With an end worth getting to and a fog that never ends.
+#[test]
+fn guides_agree_over_a_floor_in_haze() {
+    let text = EMBEDDED.replace("SCALE", "1.5") + HAZE + FLOOR;
+    guides_agree(&text, few_guides(), 400_000);
+}
+
+/// With the toggles for emission, whose walks share the medium with the guided ones.
+#[test]
+fn guides_agree_whatever_else_is_on() {
+    let guided = half_of_strategies().into_iter().filter(|strategy| strategy.probe_mis);
+    let text = EMBEDDED.replace("SCALE", "1.5") + HAZE;
+    guides_agree(&text, guided.collect(), 2_000_000);
+}
+
+fn probes(text: &str, count: u32) -> (Scene, Option<Probes>) {
+    let advanced = Advanced { probe_count: count, ..Advanced::default() };
+    let scene = with_strategy(&build(text), Strategy { advanced, ..Preset::Full.strategy() });
+    let probes = Probes::new(&scene);
+    (scene, probes)
+}
+
+/// Wherever the medium scatters, the line along a ray has a density, and it integrates to one.
+#[test]
+fn lines_cover_what_scatters() {
+    let text = EMBEDDED.replace("SCALE", "2.0");
+    let (scene, probes) = probes(&text, 2000);
+    let probes = probes.unwrap();
+    let mut covered = 0;
+    for i in 0..400 {
+        let offset = glam::Vec2::new(0.37, 0.61);
+        let size = glam::UVec2::splat(20);
+        let ray = scene.camera.ray(size, glam::UVec2::new(i % 20, i / 20), offset);
+        let end = f32::INFINITY;
+        let Some(line) = probes.along(scene.world.along(ray, end), &ray) else { continue };
+        let (n, reach) = (20_000, 8.0);
+        let mut integral = 0.0;
+        for k in 0..n {
+            let t = reach * (k as f32 + 0.5) / n as f32;
+            let pdf = line.pdf(t);
+            let scatters = scene.world.matter_at(ray.at(t)).is_some_and(|m| m.mu_s.x > 0.0);
+            assert!(pdf > 0.0 || !scatters, "no density at {t} of pixel {i}");
+            integral += f64::from(pdf) * f64::from(reach) / f64::from(n);
+        }
+        assert!((integral - 1.0).abs() < 0.02, "{integral}");
+        covered += 1;
+    }
+    assert!(covered > 100);
+}
+
+/// More probes are placed where more light is scattered, about as many as were asked for, and the
+/// light of a lamp is felt along a ray that passes it.
+#[test]
+fn probes_know_where_the_lamp_is() {
+    let text = EMBEDDED.replace("SCALE", "0.4");
+    for count in [500, 4000] {
+        let (scene, probes) = probes(&text, count);
+        let probes = probes.unwrap();
+        let lamp = glam::Vec3A::new(0.35, 0.1, 0.2);
+        let origin = glam::Vec3A::new(0.35, -4.0, 0.42);
+        let ray = flambeau::math::Ray::new(origin, glam::Vec3A::Y);
+        let line = probes.along(scene.world.along(ray, f32::INFINITY), &ray).unwrap();
+        let near = line.pdf(4.0 + lamp.y);
+        let far = line.pdf(4.0 + lamp.y - 0.6);
+        assert!(near > 2.0 * far, "{near} near the lamp, {far} off it");
+        let placed = probes.len();
+        assert!(placed > count as usize / 8 && placed < 2 * count as usize, "{placed}");
+    }
+}
+
+#[test]
+fn without_scattering_there_are_no_probes() {
+    let dark = EMBEDDED.replace("SCALE", "2.0").replace("albedo = [0.9, 0.8, 0.7]", "albedo = 0.0");
+    assert!(probes(&dark.replace("albedo = 0.2", "albedo = 0.0"), 500).1.is_none());
+    let scene = build(&dark);
+    let advanced = Advanced { distance: Distance::Null, ..Advanced::default() };
+    let strategy = Strategy { advanced, ..Preset::Full.strategy() };
+    assert!(Probes::new(&with_strategy(&scene, strategy)).is_none());
+}
