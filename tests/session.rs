@@ -278,7 +278,14 @@ fn session() -> (Arc<Session>, Receiver<()>) {
 }
 
 fn request(sampler: &Arc<Shade>, spp: u32, generation: u64) -> Request {
-    Request { sampler: Arc::clone(sampler) as _, size: SIZE, spp, generation, resume: None }
+    Request {
+        sampler: Arc::clone(sampler) as _,
+        size: SIZE,
+        spp,
+        generation,
+        resume: None,
+        provisional: false,
+    }
 }
 
 /// Waits for a picture that will do.

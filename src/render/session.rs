@@ -34,6 +34,10 @@ pub struct Request {
     pub generation: u64,
     /// A film to go on from, of the same size.
     pub resume: Option<Film>,
+    /// Whether a better sampler of the same picture is in the making, which
+    /// [`Session::improve`] will bring. Until then the render is not finished, whatever its limit,
+    /// and a snapshot waits, unless it is paused.
+    pub provisional: bool,
 }
 
 /// A progressive render in the background. Dropping it ends it within one sample a thread.
@@ -46,9 +50,17 @@ pub struct Session {
 #[derive(Default)]
 struct Mail {
     request: Option<Request>,
+    improvement: Option<Improvement>,
     snapshots: Vec<Sender<Film>>,
     paused: bool,
     shows_steps: bool,
+}
+
+/// What becomes of a provisional request.
+struct Improvement {
+    generation: u64,
+    /// `None`: it stays as it is.
+    sampler: Option<Arc<dyn PixelSampler>>,
 }
 
 struct Shared {
@@ -57,6 +69,9 @@ struct Shared {
     /// Grows with every letter; work that began under an older number breaks off.
     epoch: AtomicU64,
     quit: AtomicBool,
+    /// Whether an improvement came that has not been seen, for which a render that shows nothing
+    /// yet breaks off at once.
+    improved: AtomicBool,
     latest: Mutex<Option<Arc<Picture>>>,
     failure: Mutex<Option<(u64, Failure)>>,
     on_publish: Box<dyn Fn() + Send + Sync>,
@@ -78,6 +93,7 @@ impl Session {
             bell: Condvar::new(),
             epoch: AtomicU64::new(0),
             quit: AtomicBool::new(false),
+            improved: AtomicBool::new(false),
             latest: Mutex::default(),
             failure: Mutex::default(),
             on_publish: Box::new(on_publish),
@@ -106,6 +122,17 @@ impl Session {
     /// a request that has not begun is dropped.
     pub fn start(&self, request: Request) {
         self.shared.post(|mail| mail.request = Some(request));
+    }
+
+    /// Brings the provisional request of that generation the sampler it waits for, or says that
+    /// none will come; in vain if it is no longer the latest. The render starts over with it, just
+    /// as if it had begun so, and the picture of before stays until the new one has as many paths:
+    /// it neither goes blank nor gets coarser. A paused render starts over when it is resumed.
+    pub fn improve(&self, generation: u64, sampler: Option<Arc<dyn PixelSampler>>) {
+        self.shared.post(|mail| {
+            mail.improvement = Some(Improvement { generation, sampler });
+            self.shared.improved.store(true, Ordering::Relaxed);
+        });
     }
 
     /// Holds or resumes refinement. A request started while paused still brings its first, coarse
@@ -192,9 +219,44 @@ struct Active {
     begun: Instant,
     failed: bool,
     shown_final: bool,
+    /// Whether a better sampler is in the making, and the sampler if it is there.
+    awaits: Awaits,
+    /// Paths of the picture shown when it started over, without which it shows none.
+    held_below: u64,
+}
+
+/// How a request stands that may be improved.
+enum Awaits {
+    Nothing,
+    Sampler,
+    /// For the pause to end.
+    Resumption(Arc<dyn PixelSampler>),
 }
 
 impl Active {
+    fn new(engine: Engine, generation: u64, provisional: bool) -> Self {
+        Self {
+            engine,
+            generation,
+            begun: Instant::now(),
+            failed: false,
+            shown_final: false,
+            awaits: if provisional { Awaits::Sampler } else { Awaits::Nothing },
+            held_below: 0,
+        }
+    }
+
+    /// Whether what it samples will not change any more.
+    fn is_settled(&self) -> bool {
+        matches!(self.awaits, Awaits::Nothing)
+    }
+
+    /// Whether there is a picture that does not fall behind the one shown before it started over.
+    fn may_show(&self) -> bool {
+        let paths = self.engine.film().totals.paths;
+        self.engine.has_picture() && (paths >= self.held_below || self.engine.is_finished())
+    }
+
     /// Whether it should get its first picture before the next request has its turn.
     fn is_owed_a_picture(&self) -> bool {
         !self.failed && !self.engine.has_picture() && self.begun.elapsed() < PATIENCE
@@ -223,6 +285,7 @@ impl Worker {
         if shared.quit.load(Ordering::Relaxed) {
             return false;
         }
+        shared.improved.store(false, Ordering::Relaxed);
         self.snapshots.append(&mut mail.snapshots);
         self.paused = mail.paused;
         self.owes_steps |= mail.shows_steps && !self.shows_steps;
@@ -231,13 +294,49 @@ impl Worker {
             // The epoch stays the old one: the letter is still unread.
             return true;
         }
-        let request = mail.request.take();
+        let (request, improvement) = (mail.request.take(), mail.improvement.take());
         self.epoch = shared.epoch.load(Ordering::Relaxed);
         drop(mail);
         if let Some(request) = request {
             self.begin(request);
         }
+        if let Some(improvement) = improvement {
+            self.take_in(improvement);
+        }
+        self.start_over();
         true
+    }
+
+    /// Notes what becomes of a provisional request, if it is the one being rendered.
+    fn take_in(&mut self, improvement: Improvement) {
+        let Improvement { generation, sampler } = improvement;
+        let Some(job) = self.job.as_mut().filter(|job| job.generation == generation) else {
+            return;
+        };
+        match sampler {
+            Some(sampler) => job.awaits = Awaits::Resumption(sampler),
+            None => {
+                job.awaits = Awaits::Nothing;
+                // A last picture may have been shown that did not know it.
+                job.shown_final = false;
+            }
+        }
+    }
+
+    /// Starts the render over with the better sampler that came for it, unless it is paused and has
+    /// something to show.
+    fn start_over(&mut self) {
+        let Some(job) = &mut self.job else { return };
+        if job.failed || self.paused && job.engine.has_picture() {
+            return;
+        }
+        let Awaits::Resumption(sampler) = &job.awaits else { return };
+        job.engine.start_over(sampler.clone());
+        job.awaits = Awaits::Nothing;
+        job.shown_final = false;
+        let shown = lock(&self.shared.latest);
+        let shown = shown.as_ref().filter(|picture| picture.generation == job.generation);
+        job.held_below = shown.map_or(0, |picture| picture.stats.paths);
     }
 
     fn begin(&mut self, request: Request) {
@@ -252,13 +351,7 @@ impl Worker {
             Ok(film) => {
                 let limits = Limits { spp: request.spp, seconds: None };
                 let engine = Engine::new(request.sampler, film, limits, self.seconds_per_path);
-                self.job = Some(Active {
-                    engine,
-                    generation: request.generation,
-                    begun: Instant::now(),
-                    failed: false,
-                    shown_final: false,
-                });
+                self.job = Some(Active::new(engine, request.generation, request.provisional));
             }
             Err(error) => {
                 let failure = Failure { at: None, message: error.to_string() };
@@ -277,7 +370,8 @@ impl Worker {
             self.snapshots.clear();
             return;
         };
-        if !job.engine.has_picture() && !job.failed {
+        let stands = job.is_settled() || self.paused;
+        if !(job.may_show() && stands || job.failed) {
             return;
         }
         for sender in self.snapshots.drain(..) {
@@ -292,7 +386,7 @@ impl Worker {
     /// brings them with its first.
     fn serve_steps(&mut self) {
         let owed = std::mem::take(&mut self.owes_steps);
-        if owed && self.job.as_ref().is_some_and(|job| job.engine.has_picture()) {
+        if owed && self.job.as_ref().is_some_and(Active::may_show) {
             self.publish();
         }
     }
@@ -309,11 +403,13 @@ impl Worker {
             shared.epoch.load(Ordering::Relaxed) != epoch
                 && (has_picture
                     || shared.quit.load(Ordering::Relaxed)
+                    || shared.improved.load(Ordering::Relaxed)
                     || begun.elapsed() > PATIENCE)
         };
-        let step = job.engine.step(&self.pool, self.paused, &stop);
+        let paused = self.paused && job.may_show();
+        let step = job.engine.step(&self.pool, paused, &stop);
         let finished = job.engine.is_finished();
-        let due = job.engine.publish_due() || (finished && !job.shown_final);
+        let due = job.may_show() && job.engine.publish_due() || finished && !job.shown_final;
         if due && !matches!(step, Step::Interrupted) {
             job.shown_final = finished;
             self.publish();
@@ -341,7 +437,8 @@ impl Worker {
             steps = StepMap::default();
         }
         let wanted = self.shows_steps.then_some(&mut steps);
-        let stats = job.engine.picture(&self.pool, &mut pixels, wanted);
+        let mut stats = job.engine.picture(&self.pool, &mut pixels, wanted);
+        stats.finished &= job.is_settled();
         let picture = Arc::new(Picture {
             generation: job.generation,
             size: job.engine.film().size(),
