@@ -9,13 +9,15 @@
 //! What a guide is made from (the probes, a point of a light) is fixed before either strategy
 //! draws.
 
+use glam::Vec3A;
+
 use super::{
     probes::Line,
     strategy::{Distance, Strategy},
     tracking::{self, Event, Flight},
 };
 use crate::{
-    math::{PathRng, Rgb, Slot},
+    math::{PathRng, Ray, Rgb, Slot},
     sampling::{equiangular::Equiangular, mis},
     volume::world::MediumRay,
 };
@@ -54,16 +56,39 @@ impl Guide {
     fn pdf(&self, t: f32) -> f32 {
         let line = self.line.as_ref().map(|line| line.pdf(t));
         let light = self.light.as_ref().map(|light| light.pdf(t));
-        match (line, light) {
-            (Some(line), Some(light)) => 0.5 * (line + light),
-            (one, None) | (None, one) => one.unwrap_or(0.0),
-        }
+        pdf_of_both(line, light)
     }
+}
 
+/// The density of a guide from those of its parts.
+pub(super) fn pdf_of_both(line: Option<f32>, light: Option<f32>) -> f32 {
+    match (line, light) {
+        (Some(line), Some(light)) => 0.5 * (line + light),
+        (one, None) | (None, one) => one.unwrap_or(0.0),
+    }
+}
+
+/// The place on a ray between two parameters from which points of lights are chosen.
+pub(super) fn middle(ray: &Ray, t0: f32, t1: f32) -> Vec3A {
+    ray.at(if t1.is_finite() { 0.5 * (t0 + t1) } else { t0 })
+}
+
+/// How the two flights of a camera ray share what both can bring.
+pub(super) enum Sharing {
+    /// The guided one brings it all.
+    Guided,
+    /// By MIS; the guided one is flown so many times on average.
+    Both(f32),
+}
+
+impl Sharing {
     /// How often a guided flight pays beside an unguided one: the more of the ray's light the
     /// latter leaves behind without scattering, the more.
-    fn branching(&self) -> f32 {
-        self.line.as_ref().map_or(1.0, Line::transmittance).max(LEAST_BRANCHING)
+    pub(super) fn new(strategy: &Strategy, line: Option<&Line>) -> Self {
+        match strategy.advanced.distance {
+            Distance::Probes => Self::Guided,
+            _ => Self::Both(line.map_or(1.0, Line::transmittance).max(LEAST_BRANCHING)),
+        }
     }
 }
 
@@ -117,15 +142,16 @@ pub(super) fn null_and_guided(
     throughput: Rgb,
     rng: &mut PathRng,
 ) -> (Flight, Option<Flight>) {
-    let share = match strategy.advanced.distance {
-        Distance::Probes => 1.0,
-        _ => guide.branching(),
+    let sharing = Sharing::new(strategy, guide.line.as_ref());
+    let share = match sharing {
+        Sharing::Guided => 1.0,
+        Sharing::Both(share) => share,
     };
     let weigh = |flight: &mut Flight, is_null: bool| {
         if let Event::Scattered { t, .. } = flight.event {
-            flight.weight *= match strategy.advanced.distance {
-                Distance::Probes => alone(flight.pdf_null, guide.pdf(t), is_null),
-                _ => mis::mixture([1.0, share], [flight.pdf_null, guide.pdf(t)]),
+            flight.weight *= match sharing {
+                Sharing::Guided => alone(flight.pdf_null, guide.pdf(t), is_null),
+                Sharing::Both(_) => mis::mixture([1.0, share], [flight.pdf_null, guide.pdf(t)]),
             };
         }
     };

@@ -8,6 +8,7 @@ pub mod observer;
 mod optimal;
 pub mod path;
 pub mod probes;
+pub mod profile;
 pub mod scene;
 pub mod strategy;
 mod stratified;
