@@ -505,6 +505,72 @@ fn the_energy_of_cells_has_a_legend_with_numbers() {
 }
 
 #[test]
+fn probes_are_drawn_over_the_picture_where_there_are_any() {
+    let Some(mut window) = Window::open(BALL) else { return };
+    window.click(Role::Button, "Fixed");
+    window.until_finished();
+    window.click(Role::DisclosureTriangle, "Diagnostics");
+    window.harness.remove_cursor();
+    window.settle();
+    let plain = shown_picture(&mut window);
+    window.click(Role::Button, "Probes");
+    window.until_it_says(" probes");
+    assert!(window.has("Scattered light, radiance/length"));
+    window.harness.remove_cursor();
+    window.settle();
+    let drawn = shown_picture(&mut window);
+    assert!(differing(&plain, &drawn, 0..plain.height() - 110) > 500, "no probes are drawn");
+    window.press(Modifiers::NONE, Key::Num5);
+    window.until_it_says("No probe here has light.");
+    window.click(Role::Button, "Off");
+    assert!(!window.has("Scattered light, radiance/length"));
+}
+
+/// The ray through the middle of the ball crosses 2 of μ_t = 2.
+#[test]
+fn a_click_looks_into_the_ray_of_a_pixel() {
+    let Some(mut window) = Window::open(BALL) else { return };
+    window.click(Role::Button, "Fixed");
+    window.until_finished();
+    let opened = window.document().clone();
+    window.click(Role::DisclosureTriangle, "Diagnostics");
+    window.click(Role::CheckBox, "Inspect a ray");
+    assert!(!window.has("optical depth"), "nothing is in the way before a pixel is picked");
+    let area = window.harness.get_by_role_and_label(Role::Image, "Picture").rect();
+    let click = |window: &mut Window, at: egui::Pos2| {
+        window.harness.drag_at(at);
+        window.harness.drop_at(at);
+        window.harness.step();
+        window.settle();
+    };
+    // The window of the ray lies below on the right.
+    let enlarged = (area.width() / 64.0).min(area.height() / 48.0).floor();
+    let pixel = |x: f32, y: f32| area.center() + enlarged * egui::vec2(x - 31.5, y - 23.5);
+    click(&mut window, pixel(32.0, 24.0));
+    window.until_it_says("Pixel 32, 24: optical depth 3.9");
+    assert!(window.has("Extinction 2") && window.has("Transmittance 1"));
+    assert_eq!(window.document(), &opened, "looking is no edit");
+
+    let plot = window.harness.get_by_role_and_label(Role::Image, "Shares along the ray, share");
+    let end = plot.rect().right_center() - egui::vec2(8.0, 0.0);
+    window.harness.hover_at(end);
+    window.settle();
+    assert!(window.has("Transmittance 0.02"), "exp(−4) = 0.018 at the far end");
+
+    // Zoomed in, the pixel under the pointer is the one that is picked.
+    let corner = pixel(3.0, 3.0);
+    window.harness.hover_at(corner);
+    window.press(Modifiers::NONE, Key::Z);
+    window.press(Modifiers::NONE, Key::Z);
+    click(&mut window, corner);
+    window.until_it_says("this ray meets no medium");
+    window.click(Role::Button, "Close window");
+    assert!(!window.has("this ray meets no medium"));
+    click(&mut window, pixel(32.0, 24.0));
+    assert!(!window.has("optical depth"), "closed, clicks pick nothing");
+}
+
+#[test]
 fn the_map_of_steps_colors_each_pixel_by_what_it_costs() {
     let Some(mut window) = Window::open(BALL) else { return };
     window.click(Role::Button, "Fixed");

@@ -64,8 +64,16 @@ fn homogeneous_smoke_is_as_its_formula() {
     assert!(profile.guided);
     let p_select = integral(&profile.rows, |row| row.p_select);
     assert!((p_select - 1.0).abs() < 2e-3, "{p_select}");
+}
+
+/// The lamp is nearest to the ray at t = 5.2.
+#[test]
+fn thin_smoke_is_looked_at_where_the_lamp_is() {
+    let thin = BALL.replace("density.scale = 2.0", "density.scale = 0.1").replace("3.0", "0.0");
+    let profile = profile(&build(&thin));
     let brightest = profile.rows.iter().max_by(|a, b| a.p_select.total_cmp(&b.p_select)).unwrap();
-    assert!((brightest.t - 5.2).abs() < 0.3, "the lamp is nearest at 5.2: {brightest:?}");
+    assert!((brightest.t - 5.2).abs() < 0.2, "{brightest:?}");
+    assert!(brightest.weight_guided > 0.9, "{brightest:?}");
 }
 
 #[test]

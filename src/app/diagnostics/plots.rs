@@ -1,0 +1,72 @@
+//! The curves along a ray: densities in one plot, shares in another below it.
+
+use egui::{Stroke, Ui};
+use egui_plot::{Line, Plot, PlotPoints, PlotUi, VLine};
+
+use super::ray::{Curve, DENSITIES, SHARES};
+use crate::app::theme::color;
+use crate::transport::profile::Row;
+
+/// Room of a plot in points, without the axis below.
+const SIZE: egui::Vec2 = egui::vec2(300.0, 118.0);
+/// Room of the numbers beside it.
+const AXIS: f32 = 52.0;
+
+/// Shows both with a mark at distance `at`; gives the distance under the pointer.
+pub fn show(ui: &mut Ui, rows: &[Row], at: f32) -> Option<f32> {
+    let densities = plot(ui, "Densities along the ray", "1/length", at, |plot| {
+        for curve in &DENSITIES {
+            plot.line(line(curve, rows, 1.0));
+        }
+    });
+    let peak = rows.iter().map(|row| row.emission).fold(0.0, f32::max);
+    let shares = plot(ui, "Shares along the ray", "share", at, |plot| {
+        for curve in &SHARES {
+            let scale = if curve.unit.is_empty() || peak <= 0.0 { 1.0 } else { 1.0 / peak };
+            plot.line(line(curve, rows, scale));
+        }
+    });
+    densities.or(shares)
+}
+
+fn line<'a>(curve: &Curve, rows: &[Row], scale: f32) -> Line<'a> {
+    let point = |row: &Row| [f64::from(row.t), f64::from(scale * (curve.value)(row))];
+    let points: PlotPoints<'a> = rows.iter().map(point).collect();
+    Line::new(curve.name, points).color(curve.color).width(1.6).allow_hover(false)
+}
+
+fn plot(
+    ui: &mut Ui,
+    name: &str,
+    unit: &str,
+    at: f32,
+    curves: impl FnOnce(&mut PlotUi<'_>),
+) -> Option<f32> {
+    let shown = Plot::new(name)
+        .width(SIZE.x)
+        .height(SIZE.y)
+        .allow_zoom(false)
+        .allow_drag(false)
+        .allow_scroll(false)
+        .allow_boxed_zoom(false)
+        .allow_axis_zoom_drag(false)
+        .allow_double_click_reset(false)
+        .show_x(false)
+        .show_y(false)
+        .show_crosshair(false)
+        .set_margin_fraction(egui::vec2(0.0, 0.06))
+        .include_y(0.0)
+        .x_axis_label("Distance from the camera, lengths")
+        .y_axis_label(unit.to_owned())
+        .y_axis_min_width(AXIS)
+        .grid_color(color::LINE)
+        .show(ui, |plot| {
+            let mark = VLine::new("", f64::from(at));
+            plot.vline(mark.stroke(Stroke::new(1.0, color::TEXT_DIM)).allow_hover(false));
+            curves(plot);
+        });
+    let label = format!("{name}, {unit}");
+    shown.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &label));
+    let pointer = shown.response.hover_pos()?;
+    Some(shown.transform.value_from_position(pointer).x as f32)
+}
