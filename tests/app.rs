@@ -12,7 +12,7 @@ use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::wgpu::{WgpuTestRenderer, create_render_state, default_wgpu_setup};
 use egui_kittest::{Harness, SnapshotOptions};
-use flambeau::app::{App, Dialogs, Document, Level, Options, Scale, ramp_color};
+use flambeau::app::{App, Dialogs, Document, Level, Notice, Options, Scale, ramp_color};
 use flambeau::scene;
 use flambeau::transport::strategy::{Advanced, BoostMode, LightSelection, NeeEvaluation};
 
@@ -127,8 +127,10 @@ impl Window {
         let path = self.folder.path().join(name);
         self.press(modifiers, Key::S);
         self.type_path(path.to_str().unwrap());
-        self.until("the file is saved", |app| !app.notices().list().is_empty());
-        assert_eq!(self.app().notices().list()[0].level, Level::Done);
+        let of_it = |notice: &&Notice| notice.text.contains(name);
+        let told = |app: &App| app.notices().list().iter().find(of_it).map(|notice| notice.level);
+        self.until("the file is saved", |app| told(app).is_some());
+        assert_eq!(told(self.app()), Some(Level::Done));
         path
     }
 

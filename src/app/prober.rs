@@ -135,7 +135,6 @@ impl Shared {
 impl Desk {
     /// What is known of the probes of `built`: `None` if they have to be placed first. Lets go of
     /// those that no strategy of the same scene could use.
-    #[allow(clippy::option_option)]
     fn known(&mut self, built: &Built) -> Option<Option<Arc<Probes>>> {
         self.ready = self.ready.take().filter(|(source, _)| same_places(source, built));
         if Probes::recipe(&built.settings.strategy).is_none() {

@@ -1,26 +1,31 @@
 //! The curves along a ray: densities in one plot, shares in another below it.
 
-use egui::{Stroke, Ui};
+use egui::{RichText, Stroke, Ui};
 use egui_plot::{Line, Plot, PlotPoints, PlotUi, VLine};
 
 use super::ray::{Curve, DENSITIES, SHARES};
 use crate::app::theme::color;
 use crate::transport::profile::Row;
 
-/// Room of a plot in points, without the axis below.
-const SIZE: egui::Vec2 = egui::vec2(300.0, 118.0);
+/// Width of a plot in points, and its height without the axis below.
+const SIZE: egui::Vec2 = egui::vec2(290.0, 112.0);
 /// Room of the numbers beside it.
 const AXIS: f32 = 52.0;
+/// Room of the numbers below it, and of the name below those.
+const BELOW: [f32; 2] = [18.0, 20.0];
+/// Distances of grid lines in points, from where they begin to show to where they do in full.
+const GRID: std::ops::RangeInclusive<f32> = 16.0..=90.0;
 
 /// Shows both with a mark at distance `at`; gives the distance under the pointer.
 pub fn show(ui: &mut Ui, rows: &[Row], at: f32) -> Option<f32> {
-    let densities = plot(ui, "Densities along the ray", "1/length", at, |plot| {
+    let densities = plot(ui, "Densities along the ray", ["", "1/length"], at, |plot| {
         for curve in &DENSITIES {
             plot.line(line(curve, rows, 1.0));
         }
     });
     let peak = rows.iter().map(|row| row.emission).fold(0.0, f32::max);
-    let shares = plot(ui, "Shares along the ray", "share", at, |plot| {
+    let axes = ["Distance from the camera, lengths", "share"];
+    let shares = plot(ui, "Shares along the ray", axes, at, |plot| {
         for curve in &SHARES {
             let scale = if curve.unit.is_empty() || peak <= 0.0 { 1.0 } else { 1.0 / peak };
             plot.line(line(curve, rows, scale));
@@ -35,16 +40,21 @@ fn line<'a>(curve: &Curve, rows: &[Row], scale: f32) -> Line<'a> {
     Line::new(curve.name, points).color(curve.color).width(1.6).allow_hover(false)
 }
 
+fn small(text: &str) -> RichText {
+    RichText::new(text).small().color(color::TEXT_DIM)
+}
+
 fn plot(
     ui: &mut Ui,
     name: &str,
-    unit: &str,
+    [below, beside]: [&str; 2],
     at: f32,
     curves: impl FnOnce(&mut PlotUi<'_>),
 ) -> Option<f32> {
+    let below_it = if below.is_empty() { BELOW[0] } else { BELOW[0] + BELOW[1] };
     let shown = Plot::new(name)
         .width(SIZE.x)
-        .height(SIZE.y)
+        .height(SIZE.y + below_it)
         .allow_zoom(false)
         .allow_drag(false)
         .allow_scroll(false)
@@ -56,8 +66,9 @@ fn plot(
         .show_crosshair(false)
         .set_margin_fraction(egui::vec2(0.0, 0.06))
         .include_y(0.0)
-        .x_axis_label("Distance from the camera, lengths")
-        .y_axis_label(unit.to_owned())
+        .x_axis_label(small(below))
+        .y_axis_label(small(beside))
+        .grid_spacing(GRID)
         .y_axis_min_width(AXIS)
         .grid_color(color::LINE)
         .show(ui, |plot| {
@@ -65,7 +76,7 @@ fn plot(
             plot.vline(mark.stroke(Stroke::new(1.0, color::TEXT_DIM)).allow_hover(false));
             curves(plot);
         });
-    let label = format!("{name}, {unit}");
+    let label = format!("{name}, {beside}");
     shown.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &label));
     let pointer = shown.response.hover_pos()?;
     Some(shown.transform.value_from_position(pointer).x as f32)

@@ -20,7 +20,9 @@ const ROWS: u32 = 300;
 /// Radius of the mark around the pixel in points, at least.
 const MARK: f32 = 6.0;
 /// Room for the name of a curve and for its value.
-const COLUMNS: [f32; 2] = [112.0, 66.0];
+const COLUMNS: [f32; 2] = [110.0, 50.0];
+/// Height of a row of the legend.
+const ROW: f32 = 15.0;
 
 /// A curve as the legend explains it.
 pub struct Curve {
@@ -218,9 +220,8 @@ fn readout(ui: &mut Ui, row: Row) {
     let distance = format!("At distance {}", significant(f64::from(row.t)));
     ui.label(RichText::new(distance).color(color::TEXT_STRONG));
     ui.add_space(space::TIGHT);
-    for curves in [DENSITIES.as_slice(), SHARES.as_slice()] {
-        let id = curves.len();
-        Grid::new(("ray", id)).num_columns(2).show(ui, |ui| {
+    for (id, curves) in [DENSITIES.as_slice(), SHARES.as_slice()].into_iter().enumerate() {
+        Grid::new(("ray", id)).num_columns(3).min_row_height(ROW).show(ui, |ui| {
             for curve in curves {
                 entry(ui, curve, (curve.value)(&row));
                 ui.end_row();
@@ -239,15 +240,15 @@ fn entry(ui: &mut Ui, curve: &Curve, value: f32) {
         let name = RichText::new(curve.name).small().color(color::TEXT_DIM);
         ui.add(Label::new(name)).on_hover_text(curve.help);
     });
-    ui.vertical(|ui| {
+    let value = significant(f64::from(value));
+    let text = RichText::new(&value).small().color(color::TEXT_STRONG);
+    ui.scope(|ui| {
         ui.set_min_width(COLUMNS[1]);
-        let value = significant(f64::from(value));
-        let text = RichText::new(&value).small().color(color::TEXT_STRONG);
-        ui.label(text).accessible_name(format!("{} {value}", curve.name));
-        if !curve.unit.is_empty() {
-            ui.label(RichText::new(curve.unit).small().color(color::TEXT_DIM));
-        }
+        let spoken = format!("{} {value}", curve.name);
+        let label = ui.label(text);
+        label.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &spoken));
     });
+    ui.add(Label::new(RichText::new(curve.unit).small().color(color::TEXT_DIM)).extend());
 }
 
 /// Marks a place of the picture, given in its pixels.
