@@ -1,7 +1,7 @@
 //! The curves along a ray: densities in one plot, shares in another below it.
 
 use egui::{RichText, Stroke, Ui};
-use egui_plot::{Line, Plot, PlotPoints, PlotUi, VLine};
+use egui_plot::{Line, Plot, PlotPoints, PlotUi, VLine, uniform_grid_spacer};
 
 use super::ray::{Curve, DENSITIES, SHARES};
 use crate::app::theme::color;
@@ -14,7 +14,9 @@ const AXIS: f32 = 52.0;
 /// Room of the numbers below it, and of the name below those.
 const BELOW: [f32; 2] = [18.0, 20.0];
 /// Distances of grid lines in points, from where they begin to show to where they do in full.
-const GRID: std::ops::RangeInclusive<f32> = 16.0..=90.0;
+const GRID: std::ops::RangeInclusive<f32> = 12.0..=30.0;
+/// Grid lines across a plot, about.
+const LINES: f64 = 5.0;
 
 /// Shows both with a mark at distance `at`; gives the distance under the pointer.
 pub fn show(ui: &mut Ui, rows: &[Row], at: f32) -> Option<f32> {
@@ -38,6 +40,15 @@ fn line<'a>(curve: &Curve, rows: &[Row], scale: f32) -> Line<'a> {
     let point = |row: &Row| [f64::from(row.t), f64::from(scale * (curve.value)(row))];
     let points: PlotPoints<'a> = rows.iter().map(point).collect();
     Line::new(curve.name, points).color(curve.color).width(1.6).allow_hover(false)
+}
+
+/// The step between grid lines, 1, 2 or 5 times a power of ten, and multiples of it.
+fn steps((low, high): (f64, f64), lines: f64) -> [f64; 3] {
+    let least = ((high - low) / lines).max(1e-12);
+    let decade = 10_f64.powf(least.log10().floor());
+    let round = [1.0, 2.0, 5.0].map(|step| step * decade).into_iter().find(|&step| step >= least);
+    let step = round.unwrap_or(10.0 * decade);
+    [step, 10.0 * step, 100.0 * step]
 }
 
 fn small(text: &str) -> RichText {
@@ -69,6 +80,8 @@ fn plot(
         .x_axis_label(small(below))
         .y_axis_label(small(beside))
         .grid_spacing(GRID)
+        .x_grid_spacer(uniform_grid_spacer(|input| steps(input.bounds, LINES)))
+        .y_grid_spacer(uniform_grid_spacer(|input| steps(input.bounds, 0.6 * LINES)))
         .y_axis_min_width(AXIS)
         .grid_color(color::LINE)
         .show(ui, |plot| {
@@ -80,4 +93,18 @@ fn plot(
     shown.response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, &label));
     let pointer = shown.response.hover_pos()?;
     Some(shown.transform.value_from_position(pointer).x as f32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_are_round() {
+        let first = |low, high| steps((low, high), 5.0)[0];
+        for (high, step) in [(1.0, 0.2), (12.0, 5.0), (3.0, 1.0), (40.0, 10.0)] {
+            assert!((first(0.0, high) / step - 1.0).abs() < 1e-9, "{high}");
+        }
+        assert!(first(2.0, 2.0) > 0.0);
+    }
 }
