@@ -1,10 +1,11 @@
 //! The curves along a ray: densities in one plot, shares in another below it.
 
 use egui::{RichText, Stroke, Ui};
-use egui_plot::{Line, Plot, PlotPoints, PlotUi, VLine, uniform_grid_spacer};
+use egui_plot::{GridMark, Line, Plot, PlotPoints, PlotUi, VLine, uniform_grid_spacer};
 
 use super::ray::{Curve, DENSITIES, SHARES};
 use crate::app::theme::color;
+use crate::app::widgets::significant;
 use crate::transport::profile::Row;
 
 /// Width of a plot in points, and its height without the axis below.
@@ -51,6 +52,12 @@ fn steps((low, high): (f64, f64), lines: f64) -> [f64; 3] {
     [step, 10.0 * step, 100.0 * step]
 }
 
+/// A number at a grid line, a multiple of its step.
+fn number(mark: GridMark) -> String {
+    // Adding zero takes the sign off it.
+    significant((mark.value / mark.step_size).round() * mark.step_size + 0.0)
+}
+
 fn small(text: &str) -> RichText {
     RichText::new(text).small().color(color::TEXT_DIM)
 }
@@ -83,6 +90,8 @@ fn plot(
         .x_grid_spacer(uniform_grid_spacer(|input| steps(input.bounds, LINES)))
         .y_grid_spacer(uniform_grid_spacer(|input| steps(input.bounds, 0.6 * LINES)))
         .y_axis_min_width(AXIS)
+        .x_axis_formatter(|mark, _| number(mark))
+        .y_axis_formatter(|mark, _| number(mark))
         .grid_color(color::LINE)
         .show(ui, |plot| {
             let mark = VLine::new("", f64::from(at));
@@ -106,5 +115,8 @@ mod tests {
             assert!((first(0.0, high) / step - 1.0).abs() < 1e-9, "{high}");
         }
         assert!(first(2.0, 2.0) > 0.0);
+        let texts =
+            [-1e-17, 0.5, 3.5, 12.0].map(|value| number(GridMark { value, step_size: 0.5 }));
+        assert_eq!(texts, ["0", "0.5", "3.5", "12"]);
     }
 }
