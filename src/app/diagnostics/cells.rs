@@ -321,8 +321,13 @@ density = { scale = 0.1 }
     /// The probes tile their cube, and score what they scatter towards the eye.
     #[test]
     fn probes_lie_in_their_cube_and_follow_the_eye() {
-        let scene = Arc::new(scene());
+        let mut settings = settings();
+        for volume in &mut settings.volume {
+            volume.albedo = crate::scene::settings::Albedo::Gray(0.5);
+        }
+        let scene = build(&settings, &VolumeCache::default(), NO_PROGRESS).unwrap();
         let probes = Probes::new(&scene).map(Arc::new);
+        let scene = Arc::new(scene);
         let source = Source { value: CellValue::Probes, scene, probes };
         let mut volume = 0.0;
         let mut count = 0;
