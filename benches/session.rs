@@ -49,6 +49,7 @@ impl Window {
             spp: 0,
             generation: self.generation,
             resume: None,
+            provisional: false,
         });
         while self.session.latest().is_none_or(|p| p.generation != self.generation) {
             self.published.recv().unwrap();

@@ -12,7 +12,7 @@ use egui::{Key, Modifiers};
 use egui_kittest::kittest::{NodeT, Queryable};
 use egui_kittest::wgpu::{WgpuTestRenderer, create_render_state, default_wgpu_setup};
 use egui_kittest::{Harness, SnapshotOptions};
-use flambeau::app::{App, Dialogs, Document, Level, Options, Scale, ramp_color};
+use flambeau::app::{App, Dialogs, Document, Level, Notice, Options, Scale, ramp_color};
 use flambeau::scene;
 use flambeau::transport::strategy::{Advanced, BoostMode, LightSelection, NeeEvaluation};
 
@@ -127,10 +127,10 @@ impl Window {
         let path = self.folder.path().join(name);
         self.press(modifiers, Key::S);
         self.type_path(path.to_str().unwrap());
-        // What was saved before may still be told of.
-        let told = |app: &App| app.notices().list().iter().any(|notice| notice.text.contains(name));
-        self.until("the file is saved", told);
-        assert!(self.app().notices().list().iter().all(|notice| notice.level == Level::Done));
+        let of_it = |notice: &&Notice| notice.text.contains(name);
+        let told = |app: &App| app.notices().list().iter().find(of_it).map(|notice| notice.level);
+        self.until("the file is saved", |app| told(app).is_some());
+        assert_eq!(told(self.app()), Some(Level::Done));
         path
     }
 
@@ -504,6 +504,77 @@ fn the_energy_of_cells_has_a_legend_with_numbers() {
     std::fs::write(&path, smoke).unwrap();
     window.harness.input_mut().dropped_files.push(Arc::new(Dropped(path)));
     window.until_it_says("No volume here emits light.");
+}
+
+#[test]
+fn probes_are_drawn_over_the_picture_where_there_are_any() {
+    let Some(mut window) = Window::open(BALL) else { return };
+    window.click(Role::Button, "Fixed");
+    window.until_finished();
+    window.click(Role::DisclosureTriangle, "Diagnostics");
+    window.harness.remove_cursor();
+    window.settle();
+    let plain = shown_picture(&mut window);
+    window.click(Role::Button, "Probes");
+    window.until_it_says(" probes");
+    assert!(window.has("Scattered light, radiance/length"));
+    window.harness.remove_cursor();
+    window.settle();
+    let drawn = shown_picture(&mut window);
+    assert!(differing(&plain, &drawn, 0..plain.height() - 110) > 500, "no probes are drawn");
+    window.press(Modifiers::NONE, Key::Num5);
+    window.until_it_says("No probe here has light.");
+    window.click(Role::Button, "Off");
+    assert!(!window.has("Scattered light, radiance/length"));
+}
+
+/// The ray through the middle of the ball crosses 2 of μ_t = 2.
+#[test]
+fn a_click_looks_into_the_ray_of_a_pixel() {
+    let Some(mut window) = Window::open(BALL) else { return };
+    window.click(Role::Button, "Fixed");
+    window.until_finished();
+    let opened = window.document().clone();
+    window.click(Role::DisclosureTriangle, "Diagnostics");
+    window.click(Role::CheckBox, "Inspect a ray");
+    assert!(!window.has("optical depth"), "nothing is in the way before a pixel is picked");
+    let area = window.harness.get_by_role_and_label(Role::Image, "Picture").rect();
+    let click = |window: &mut Window, at: egui::Pos2| {
+        window.harness.drag_at(at);
+        window.harness.drop_at(at);
+        window.harness.step();
+        window.settle();
+    };
+    // The window of the ray lies below on the right.
+    let enlarged = (area.width() / 64.0).min(area.height() / 48.0).floor();
+    let pixel = |x: f32, y: f32| area.center() + enlarged * egui::vec2(x - 31.5, y - 23.5);
+    click(&mut window, pixel(32.0, 24.0));
+    window.until_it_says("Pixel 32, 24: optical depth 3.9");
+    assert!(window.has("Extinction 2") && window.has("Transmittance 1"));
+    assert_eq!(window.document(), &opened, "looking is no edit");
+
+    let plot = window.harness.get_by_role_and_label(Role::Image, "Shares along the ray, share");
+    let end = plot.rect().right_center() - egui::vec2(8.0, 0.0);
+    window.harness.hover_at(end);
+    window.settle();
+    let read = window
+        .harness
+        .get_by(|node| node.value().is_some_and(|value| value.starts_with("Transmittance ")));
+    let read = read.value().unwrap();
+    let transmittance: f32 = read["Transmittance ".len()..].parse().unwrap();
+    assert!((0.01..0.04).contains(&transmittance), "exp(−4) = 0.018 at the far end: {read}");
+
+    // Zoomed in, the pixel under the pointer is the one that is picked.
+    let corner = pixel(3.0, 3.0);
+    window.harness.hover_at(corner);
+    window.press(Modifiers::NONE, Key::Z);
+    window.press(Modifiers::NONE, Key::Z);
+    click(&mut window, corner);
+    window.until_it_says("this ray meets no medium");
+    window.click(Role::Button, "Close window");
+    assert!(!window.has("this ray meets no medium"));
+    click(&mut window, pixel(32.0, 24.0));
+    assert!(!window.has("optical depth"), "closed, clicks pick nothing");
 }
 
 #[test]

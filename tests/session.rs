@@ -278,7 +278,14 @@ fn session() -> (Arc<Session>, Receiver<()>) {
 }
 
 fn request(sampler: &Arc<Shade>, spp: u32, generation: u64) -> Request {
-    Request { sampler: Arc::clone(sampler) as _, size: SIZE, spp, generation, resume: None }
+    Request {
+        sampler: Arc::clone(sampler) as _,
+        size: SIZE,
+        spp,
+        generation,
+        resume: None,
+        provisional: false,
+    }
 }
 
 /// Waits for a picture that will do.
@@ -426,6 +433,71 @@ fn steps_come_when_asked_for_even_after_the_end() {
     session.start(request(&Shade::new(1.0), 4, 3));
     let picture = wait(&session, &published, |picture| picture.generation == 3);
     assert!(picture.steps.mean.is_empty());
+}
+
+/// The better sampler is slow: what was shown stays until as much of the new picture is there.
+#[test]
+fn an_improved_render_starts_over_behind_the_picture() {
+    let (session, published) = session();
+    let pixels = u64::from(SIZE.x * SIZE.y);
+    session.start(Request { provisional: true, ..request(&Shade::new(0.1), 3, 1) });
+    let before = wait(&session, &published, |picture| picture.stats.paths == 3 * pixels);
+    assert!(before.complete && !before.stats.finished, "a better sampler is to come");
+    let snapshot = session.snapshot();
+    std::thread::sleep(Duration::from_millis(20));
+    assert!(snapshot.try_recv().is_err(), "it waits for that");
+
+    session.improve(7, Some(Shade::new(0.9)));
+    let better = Shade::build(0.2, Some(3 * pixels - 1), None, Duration::ZERO);
+    session.improve(1, Some(better.clone()));
+    while better.calls() < 3 * pixels - 1 {
+        std::thread::yield_now();
+    }
+    std::thread::sleep(Duration::from_millis(20));
+    assert!(Arc::ptr_eq(&before, &session.latest().unwrap()), "the old picture has more samples");
+    better.gate.set(None);
+    let after = wait(&session, &published, |picture| picture.stats.finished);
+    assert_eq!((after.generation, after.stats.paths), (1, 3 * pixels));
+    assert!(after.pixels.iter().all(|pixel| pixel[0] == 0.2));
+    let film = snapshot.recv_timeout(PATIENCE).unwrap();
+    assert_eq!(film, session.snapshot().recv_timeout(PATIENCE).unwrap());
+}
+
+#[test]
+fn improvements_wait_for_the_end_of_a_pause_and_may_fail_to_come() {
+    let (session, published) = session();
+    session.start(Request { provisional: true, ..request(&Shade::new(0.1), 0, 1) });
+    wait(&session, &published, |picture| picture.complete);
+    session.set_paused(true);
+    session.snapshot().recv_timeout(PATIENCE).unwrap();
+    let better = Shade::new(0.2);
+    session.improve(1, Some(better.clone()));
+    let film = session.snapshot().recv_timeout(PATIENCE).unwrap();
+    assert_eq!((better.calls(), film.sample_range().0 > 0), (0, true));
+    session.set_paused(false);
+    wait(&session, &published, |picture| picture.pixels[0][0] == 0.2);
+
+    session.start(Request { provisional: true, ..request(&Shade::new(0.3), 2, 2) });
+    wait(&session, &published, |picture| picture.generation == 2 && picture.complete);
+    assert!(!session.latest().unwrap().stats.finished);
+    session.improve(2, None);
+    let picture = wait(&session, &published, |picture| picture.stats.finished);
+    assert_eq!((picture.generation, picture.stats.samples_per_pixel), (2, 2.0));
+}
+
+/// What shows nothing yet loses no time: it is broken off for the better sampler.
+#[test]
+fn an_improvement_does_not_wait_for_a_first_picture() {
+    let (session, published) = session();
+    let endless = Shade::build(0.1, None, None, Duration::from_millis(5));
+    session.start(Request { provisional: true, ..request(&endless, 1, 1) });
+    while endless.calls() == 0 {
+        std::thread::yield_now();
+    }
+    session.improve(1, Some(Shade::new(0.2)));
+    let picture = wait(&session, &published, |_| true);
+    assert_eq!(picture.pixels[0][0], 0.2);
+    assert!(endless.calls() < 20, "{} samples in vain", endless.calls());
 }
 
 #[test]

@@ -1,10 +1,13 @@
 //! What is shown to understand a render: cells drawn over the picture, and maps in its place. None
 //! of it belongs to the scene, the strategy or the record of edits.
 
+mod background;
 mod cells;
 mod legend;
 mod overlay;
+mod plots;
 mod ramp;
+mod ray;
 
 use egui::{Context, Rect, Ui};
 use glam::UVec2;
@@ -15,8 +18,9 @@ use super::engine::Engine;
 use super::viewport::View;
 use crate::render::Picture;
 use crate::scene::{self, Settings};
-use cells::Gathering;
+use cells::{Gathering, Source};
 use legend::Legend;
+use ray::Inspector;
 
 /// What the cells drawn over the picture are colored by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,6 +29,8 @@ pub enum CellValue {
     Majorant,
     /// The power the cell emits, radiance × length².
     Energy,
+    /// What each probe thinks is scattered towards the camera, radiance/length.
+    Probes,
 }
 
 /// What the user asked to see.
@@ -34,6 +40,8 @@ pub struct Wanted {
     pub cells: Option<CellValue>,
     /// Whether tracking steps take the place of the picture.
     pub steps: bool,
+    /// Whether a click on the picture picks a pixel whose ray is looked into.
+    pub ray: bool,
 }
 
 /// What the user asked to see, and what is there to show it.
@@ -42,15 +50,21 @@ pub struct Diagnostics {
     /// What the user asked to see.
     pub wanted: Wanted,
     gathering: Gathering,
+    inspector: Inspector,
 }
 
 impl Diagnostics {
     /// Brings session and cells in line with what is wanted. Called once a frame.
     pub fn update(&mut self, ctx: &Context, engine: &mut Engine) {
         engine.set_shows_steps(self.wanted.steps);
-        let scene = engine.built().map(|built| &built.scene);
+        let scene = engine.built().map(|built| built.scene.clone());
+        let cells = self.wanted.cells.zip(scene.clone()).map(|(value, scene)| {
+            let probes = if value == CellValue::Probes { engine.probes() } else { None };
+            Source { value, scene, probes }
+        });
         let wake = ctx.clone();
-        self.gathering.update(self.wanted.cells, scene, move || wake.request_repaint());
+        self.gathering.update(cells, move || wake.request_repaint());
+        self.inspector.update(ctx, self.wanted.ray, engine);
     }
 
     /// The scale of the steps of `picture` where they take its place.
@@ -59,8 +73,9 @@ impl Diagnostics {
         Some(Scale::rounded(range))
     }
 
-    /// Draws over the picture of `size` pixels that lies in `view`, and the legends in a corner.
-    pub fn show(&self, ui: &mut Ui, view: View, picture: &Picture, settings: &Settings) {
+    /// Draws over the picture that lies in `view`, the legends in a corner, and what lies along the
+    /// ray of a pixel that was picked.
+    pub fn show(&mut self, ui: &mut Ui, view: View, picture: &Picture, settings: &Settings) {
         let mut legends = Vec::new();
         if let Some(scale) = self.step_scale(picture) {
             legends.push(Legend::of_steps(scale));
@@ -72,6 +87,9 @@ impl Diagnostics {
             legends.push(Legend::of_cells(value, cells));
         }
         legend::show(ui, view.rect, &legends);
+        if self.wanted.ray {
+            self.wanted.ray = self.inspector.show(ui, &view);
+        }
     }
 }
 

@@ -7,12 +7,14 @@ use std::time::{Duration, Instant};
 use glam::UVec2;
 
 use super::loader::{Built, Grids, Job, Loader, Outcome, Report, Start};
+use super::prober::Prober;
 use super::state::Document;
 use crate::error::{Error, Result};
 use crate::render::{Picture, Session};
 use crate::scene::Settings;
 use crate::scene::settings::FilmSettings;
 use crate::transport::Scene;
+use crate::transport::probes::Probes;
 
 /// A build that takes longer than this gives way to the next edit, and shows how far it is.
 const PATIENCE: Duration = Duration::from_millis(250);
@@ -42,6 +44,7 @@ pub enum News {
 pub struct Engine {
     loader: Loader,
     session: Arc<Session>,
+    prober: Arc<Prober>,
     built: Option<Built>,
     grids: Arc<Grids>,
     opening: Option<(String, Instant)>,
@@ -83,9 +86,11 @@ impl Engine {
         wake: impl Fn() + Clone + Send + Sync + 'static,
     ) -> Result<Self> {
         let session = Arc::new(Session::new(threads, wake.clone())?);
+        let prober = Arc::new(Prober::new(session.clone(), threads)?);
         Ok(Self {
-            loader: Loader::new(session.clone(), wake)?,
+            loader: Loader::new(prober.clone(), wake)?,
             session,
+            prober,
             built: None,
             grids: Arc::default(),
             opening: None,
@@ -143,6 +148,11 @@ impl Engine {
     /// The scene that was built last, and its settings.
     pub fn built(&self) -> Option<&Built> {
         self.built.as_ref()
+    }
+
+    /// The probes of the scene that was built last, once they are there.
+    pub fn probes(&self) -> Option<Arc<Probes>> {
+        self.prober.probes(self.built.as_ref()?)
     }
 
     /// The grids of all files seen so far.
@@ -283,7 +293,7 @@ impl Engine {
         built.settings.film = wanted;
         let built = built.clone();
         let start = self.next_start(size, news);
-        self.session.start(built.request(start));
+        self.prober.start(&built, start);
         self.started = Some(Started::new(&built, start));
     }
 

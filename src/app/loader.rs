@@ -8,10 +8,10 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, mpsc};
 
 use glam::UVec2;
 
+use super::prober::Prober;
 use crate::error::{Error, Progress, Result};
-use crate::render::{Request, Session};
 use crate::scene::{self, GridDescription, Overrides, Settings, VolumeCache};
-use crate::transport::{Frame, Scene};
+use crate::transport::Scene;
 
 /// The grids of volume files by the file's name.
 pub type Grids = HashMap<String, Vec<GridDescription>>;
@@ -96,12 +96,12 @@ struct Desk {
 }
 
 impl Loader {
-    /// Starts the thread, which starts renders in `session`. `on_news` is called after each report
+    /// Starts the thread, which starts renders by `prober`. `on_news` is called after each report
     /// and as work proceeds.
     ///
     /// # Errors
     /// When the system refuses to start a thread.
-    pub fn new(session: Arc<Session>, on_news: impl Fn() + Send + Sync + 'static) -> Result<Self> {
+    pub fn new(prober: Arc<Prober>, on_news: impl Fn() + Send + Sync + 'static) -> Result<Self> {
         let shared = Arc::new(Shared {
             desk: Mutex::default(),
             wake: Condvar::new(),
@@ -112,7 +112,7 @@ impl Loader {
         let worker = shared.clone();
         let thread = std::thread::Builder::new()
             .name("loader".to_owned())
-            .spawn(move || work(&worker, &session, &sender, &on_news))
+            .spawn(move || work(&worker, &prober, &sender, &on_news))
             .map_err(|error| Error::io("the loader thread", error))?;
         Ok(Self { shared, reports, thread: Some(thread) })
     }
@@ -142,16 +142,6 @@ impl Loader {
         let desk = self.shared.desk();
         let busy = desk.busy || desk.next.is_some();
         busy.then(|| self.shared.percent.load(Ordering::Relaxed) as f32 / 100.0)
-    }
-}
-
-impl Built {
-    /// Asks to render it.
-    pub fn request(&self, start: Start) -> Request {
-        let Start { size, generation } = start;
-        let film = &self.settings.film;
-        let sampler = Arc::new(Frame::new(self.scene.clone(), size, film.seed));
-        Request { sampler, size, spp: film.spp, generation, resume: None }
     }
 }
 
@@ -193,7 +183,7 @@ impl Shared {
 
 fn work(
     shared: &Shared,
-    session: &Session,
+    prober: &Prober,
     reports: &mpsc::Sender<Report>,
     on_news: &(dyn Fn() + Sync),
 ) {
@@ -217,7 +207,7 @@ fn work(
         let settings = result.as_ref().ok().map(|built| built.settings.clone());
         let started = start.filter(|start| match &result {
             Ok(built) => {
-                session.start(built.request(*start));
+                prober.start(built, *start);
                 true
             }
             Err(_) => false,
@@ -268,10 +258,12 @@ fn add_missing(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::render::Session;
     use std::time::{Duration, Instant};
 
     fn loader() -> Loader {
-        Loader::new(Arc::new(Session::new(Some(1), || ()).unwrap()), || ()).unwrap()
+        let session = Arc::new(Session::new(Some(1), || ()).unwrap());
+        Loader::new(Arc::new(Prober::new(session, Some(1)).unwrap()), || ()).unwrap()
     }
 
     fn wait(loader: &Loader) -> Outcome {

@@ -2,7 +2,7 @@
 //!
 //! - [`window`](self): [`App`] owns the state and runs a frame; [`run`] opens a window for it.
 //! - `state`, `history`: what is edited, and undo; `commands`: everything that can be asked for.
-//! - `engine`, `loader`: from edits to pictures, without ever blocking the window.
+//! - `engine`, `loader`, `prober`: from edits to pictures, without ever blocking the window.
 //! - `viewport`, `navigation`, `zoom`, `display`: the picture and the hand on it.
 //! - `diagnostics`: cells over the picture and maps in its place, to understand a render.
 //! - `panels`, `widgets`, `notices`, `theme`: what is around it.
@@ -21,6 +21,7 @@ mod loader;
 mod navigation;
 mod notices;
 mod panels;
+mod prober;
 mod saver;
 mod state;
 mod theme;

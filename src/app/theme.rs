@@ -36,6 +36,14 @@ pub mod color {
     pub const ACCENT_FILL: Color32 = Color32::from_rgb(112, 66, 26);
     /// Something to know.
     pub const WARNING: Color32 = Color32::from_rgb(226, 184, 92);
+    /// Curves: what is there.
+    pub const CURVE: Color32 = Color32::from_gray(170);
+    /// Curves: what chance draws.
+    pub const CURVE_CHANCE: Color32 = Color32::from_rgb(96, 170, 240);
+    /// Curves: what probes draw.
+    pub const CURVE_PROBES: Color32 = ACCENT;
+    /// Curves: what glows.
+    pub const CURVE_GLOW: Color32 = Color32::from_rgb(132, 204, 120);
     /// Something that failed.
     pub const ERROR: Color32 = Color32::from_rgb(232, 112, 98);
 }

@@ -46,6 +46,10 @@ pub struct View {
     pub factor: f32,
     /// Width and height of the picture.
     pub size: UVec2,
+    /// Whether the pointer is on it, and nothing in front.
+    pub hovered: bool,
+    /// The pixel that was clicked in this frame.
+    pub clicked: Option<UVec2>,
 }
 
 /// The state of the viewport between frames.
@@ -136,7 +140,15 @@ impl Viewport {
         {
             outline(ui, rect, placement, probe.pixel, factor);
         }
-        Some(View { rect, placement, factor, size: picture.size })
+        let clicked = response.clicked().then_some(self.probe).flatten().map(|probe| probe.pixel);
+        Some(View {
+            rect,
+            placement,
+            factor,
+            size: picture.size,
+            hovered: response.hovered(),
+            clicked,
+        })
     }
 
     fn navigate(

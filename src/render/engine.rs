@@ -46,6 +46,14 @@ impl Engine {
         Self { sampler, film, schedule, seconds: 0.0 }
     }
 
+    /// Throws the samples away and begins again with another sampler.
+    pub fn start_over(&mut self, sampler: Arc<dyn PixelSampler>) {
+        self.film.clear();
+        let (limits, cost) = (self.schedule.limits(), self.schedule.seconds_per_path());
+        self.schedule = Schedule::new(self.film.size(), 0, limits, cost);
+        (self.sampler, self.seconds) = (sampler, 0.0);
+    }
+
     /// Does the next piece of work, unless `stop` says so earlier.
     pub fn step(&mut self, pool: &Pool, paused: bool, stop: &(dyn Fn() -> bool + Sync)) -> Step {
         let work = match self.schedule.next(self.seconds, paused) {

@@ -188,6 +188,11 @@ impl Schedule {
         self.passes
     }
 
+    /// When it is to stop.
+    pub fn limits(&self) -> Limits {
+        self.limits
+    }
+
     /// The measured cost of a path with all threads at work, for the next plan.
     pub fn seconds_per_path(&self) -> Option<f64> {
         self.seconds_per_path

@@ -1,26 +1,21 @@
 //! Rendering behind a window: a thread of its own that takes the latest request, refines it and
 //! hands over pictures. No call here waits for sampling.
 
+mod worker;
+
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
-use std::time::{Duration, Instant};
 
 use glam::UVec2;
 
-use super::engine::{Engine, Step};
 use super::film::Film;
-use super::headless::same_size;
 use super::pool::{Failure, Pool, Priority};
-use super::publish::{Picture, StepMap};
-use super::schedule::Limits;
+use super::publish::Picture;
 use crate::error::{Error, Result};
 use crate::transport::PixelSampler;
-
-/// How long a request without a picture is left to get one when the next already waits. Otherwise
-/// a drag whose edits come faster than coarse pictures would show nothing until it ends.
-const PATIENCE: Duration = Duration::from_millis(250);
+use worker::Worker;
 
 /// Something to render.
 pub struct Request {
@@ -34,6 +29,10 @@ pub struct Request {
     pub generation: u64,
     /// A film to go on from, of the same size.
     pub resume: Option<Film>,
+    /// Whether a better sampler of the same picture is in the making, which
+    /// [`Session::improve`] will bring. Until then the render is not finished, whatever its limit,
+    /// and a snapshot waits, unless it is paused.
+    pub provisional: bool,
 }
 
 /// A progressive render in the background. Dropping it ends it within one sample a thread.
@@ -46,9 +45,17 @@ pub struct Session {
 #[derive(Default)]
 struct Mail {
     request: Option<Request>,
+    improvement: Option<Improvement>,
     snapshots: Vec<Sender<Film>>,
     paused: bool,
     shows_steps: bool,
+}
+
+/// What becomes of a provisional request.
+struct Improvement {
+    generation: u64,
+    /// `None`: it stays as it is.
+    sampler: Option<Arc<dyn PixelSampler>>,
 }
 
 struct Shared {
@@ -57,6 +64,9 @@ struct Shared {
     /// Grows with every letter; work that began under an older number breaks off.
     epoch: AtomicU64,
     quit: AtomicBool,
+    /// Whether an improvement came that has not been seen, for which a render that shows nothing
+    /// yet breaks off at once.
+    improved: AtomicBool,
     latest: Mutex<Option<Arc<Picture>>>,
     failure: Mutex<Option<(u64, Failure)>>,
     on_publish: Box<dyn Fn() + Send + Sync>,
@@ -78,22 +88,12 @@ impl Session {
             bell: Condvar::new(),
             epoch: AtomicU64::new(0),
             quit: AtomicBool::new(false),
+            improved: AtomicBool::new(false),
             latest: Mutex::default(),
             failure: Mutex::default(),
             on_publish: Box::new(on_publish),
         });
-        let worker = Worker {
-            shared: Arc::clone(&shared),
-            pool,
-            epoch: 0,
-            paused: false,
-            shows_steps: false,
-            owes_steps: false,
-            job: None,
-            seconds_per_path: None,
-            snapshots: Vec::new(),
-            spare: Vec::new(),
-        };
+        let worker = Worker::new(Arc::clone(&shared), pool);
         let thread = std::thread::Builder::new()
             .name("render".to_owned())
             .spawn(move || worker.run())
@@ -106,6 +106,17 @@ impl Session {
     /// a request that has not begun is dropped.
     pub fn start(&self, request: Request) {
         self.shared.post(|mail| mail.request = Some(request));
+    }
+
+    /// Brings the provisional request of that generation the sampler it waits for, or says that
+    /// none will come; in vain if it is no longer the latest. The render starts over with it, just
+    /// as if it had begun so, and the picture of before stays until the new one has as many paths:
+    /// it neither goes blank nor gets coarser. A paused render starts over when it is resumed.
+    pub fn improve(&self, generation: u64, sampler: Option<Arc<dyn PixelSampler>>) {
+        self.shared.post(|mail| {
+            mail.improvement = Some(Improvement { generation, sampler });
+            self.shared.improved.store(true, Ordering::Relaxed);
+        });
     }
 
     /// Holds or resumes refinement. A request started while paused still brings its first, coarse
@@ -166,218 +177,4 @@ impl Shared {
 /// half written.
 fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// The render thread.
-struct Worker {
-    shared: Arc<Shared>,
-    pool: Pool,
-    /// The epoch of the last letter read.
-    epoch: u64,
-    paused: bool,
-    shows_steps: bool,
-    /// Whether steps were asked for since the last picture.
-    owes_steps: bool,
-    job: Option<Active>,
-    seconds_per_path: Option<f64>,
-    snapshots: Vec<Sender<Film>>,
-    /// Pictures published before, to write the next one into once nobody looks at them.
-    spare: Vec<Arc<Picture>>,
-}
-
-/// The request being rendered.
-struct Active {
-    engine: Engine,
-    generation: u64,
-    begun: Instant,
-    failed: bool,
-    shown_final: bool,
-}
-
-impl Active {
-    /// Whether it should get its first picture before the next request has its turn.
-    fn is_owed_a_picture(&self) -> bool {
-        !self.failed && !self.engine.has_picture() && self.begun.elapsed() < PATIENCE
-    }
-}
-
-impl Worker {
-    fn run(mut self) {
-        let mut idle = true;
-        while self.read_mail(idle) {
-            self.serve_snapshots();
-            self.serve_steps();
-            idle = self.work();
-        }
-    }
-
-    /// Takes the mail, waiting for some when `idle`. Returns false when the session ends.
-    fn read_mail(&mut self, idle: bool) -> bool {
-        let shared = Arc::clone(&self.shared);
-        let mut mail = lock(&shared.mail);
-        if idle {
-            let nothing_new = |_: &mut Mail| shared.epoch.load(Ordering::Relaxed) == self.epoch;
-            let waited = shared.bell.wait_while(mail, nothing_new);
-            mail = waited.unwrap_or_else(PoisonError::into_inner);
-        }
-        if shared.quit.load(Ordering::Relaxed) {
-            return false;
-        }
-        self.snapshots.append(&mut mail.snapshots);
-        self.paused = mail.paused;
-        self.owes_steps |= mail.shows_steps && !self.shows_steps;
-        self.shows_steps = mail.shows_steps;
-        if self.job.as_ref().is_some_and(Active::is_owed_a_picture) && mail.request.is_some() {
-            // The epoch stays the old one: the letter is still unread.
-            return true;
-        }
-        let request = mail.request.take();
-        self.epoch = shared.epoch.load(Ordering::Relaxed);
-        drop(mail);
-        if let Some(request) = request {
-            self.begin(request);
-        }
-        true
-    }
-
-    fn begin(&mut self, request: Request) {
-        *lock(&self.shared.failure) = None;
-        let mut old_film = None;
-        if let Some(job) = self.job.take() {
-            let (film, cost) = job.engine.into_parts();
-            self.seconds_per_path = cost.or(self.seconds_per_path);
-            old_film = Some(film);
-        }
-        match film_for(request.resume, request.size, old_film) {
-            Ok(film) => {
-                let limits = Limits { spp: request.spp, seconds: None };
-                let engine = Engine::new(request.sampler, film, limits, self.seconds_per_path);
-                self.job = Some(Active {
-                    engine,
-                    generation: request.generation,
-                    begun: Instant::now(),
-                    failed: false,
-                    shown_final: false,
-                });
-            }
-            Err(error) => {
-                let failure = Failure { at: None, message: error.to_string() };
-                self.fail(request.generation, failure);
-            }
-        }
-    }
-
-    fn fail(&self, generation: u64, failure: Failure) {
-        *lock(&self.shared.failure) = Some((generation, failure));
-        (self.shared.on_publish)();
-    }
-
-    fn serve_snapshots(&mut self) {
-        let Some(job) = &self.job else {
-            self.snapshots.clear();
-            return;
-        };
-        if !job.engine.has_picture() && !job.failed {
-            return;
-        }
-        for sender in self.snapshots.drain(..) {
-            if let Ok(film) = job.engine.film().try_clone() {
-                // Whoever asked may have gone.
-                let _ = sender.send(film);
-            }
-        }
-    }
-
-    /// Publishes what there is once more when steps were asked for; a request without a picture
-    /// brings them with its first.
-    fn serve_steps(&mut self) {
-        let owed = std::mem::take(&mut self.owes_steps);
-        if owed && self.job.as_ref().is_some_and(|job| job.engine.has_picture()) {
-            self.publish();
-        }
-    }
-
-    /// One step of the render; returns whether there is nothing to do until the next letter.
-    fn work(&mut self) -> bool {
-        let Some(job) = &mut self.job else { return true };
-        if job.failed {
-            return true;
-        }
-        let (shared, epoch, begun) = (&self.shared, self.epoch, job.begun);
-        let has_picture = job.engine.has_picture();
-        let stop = || {
-            shared.epoch.load(Ordering::Relaxed) != epoch
-                && (has_picture
-                    || shared.quit.load(Ordering::Relaxed)
-                    || begun.elapsed() > PATIENCE)
-        };
-        let step = job.engine.step(&self.pool, self.paused, &stop);
-        let finished = job.engine.is_finished();
-        let due = job.engine.publish_due() || (finished && !job.shown_final);
-        if due && !matches!(step, Step::Interrupted) {
-            job.shown_final = finished;
-            self.publish();
-        }
-        match step {
-            Step::Worked | Step::Interrupted => false,
-            Step::Paused | Step::Done => true,
-            Step::Failed(failure) => {
-                if let Some(job) = &mut self.job {
-                    job.failed = true;
-                    let generation = job.generation;
-                    self.fail(generation, failure);
-                }
-                // Snapshots that waited for a picture get what there is.
-                self.snapshots.is_empty()
-            }
-        }
-    }
-
-    /// Makes a picture of the film and hands it over.
-    fn publish(&mut self) {
-        let (mut pixels, mut steps) = self.spare_memory();
-        let Some(job) = &mut self.job else { return };
-        if !self.shows_steps {
-            steps = StepMap::default();
-        }
-        let wanted = self.shows_steps.then_some(&mut steps);
-        let stats = job.engine.picture(&self.pool, &mut pixels, wanted);
-        let picture = Arc::new(Picture {
-            generation: job.generation,
-            size: job.engine.film().size(),
-            pixels,
-            steps,
-            complete: job.engine.is_complete(),
-            stats,
-        });
-        self.spare.push(Arc::clone(&picture));
-        *lock(&self.shared.latest) = Some(picture);
-        (self.shared.on_publish)();
-    }
-
-    /// Memory for a picture: that of an old one if nobody holds it any more.
-    fn spare_memory(&mut self) -> (Vec<[f32; 4]>, StepMap) {
-        let free = self.spare.iter().position(|picture| Arc::strong_count(picture) == 1);
-        let free = free.map(|index| self.spare.swap_remove(index));
-        // Two are kept: the latest and the one the window may still be reading.
-        let excess = self.spare.len().saturating_sub(2);
-        self.spare.drain(..excess);
-        free.and_then(|picture| Arc::try_unwrap(picture).ok())
-            .map_or_else(Default::default, |picture| (picture.pixels, picture.steps))
-    }
-}
-
-/// The film to render on: the one to resume, the old one cleared, or a new one.
-fn film_for(resume: Option<Film>, size: UVec2, old: Option<Film>) -> Result<Film> {
-    match (resume, old) {
-        (Some(film), _) => same_size(film, size),
-        (None, Some(mut film)) if film.size() == size => {
-            film.clear();
-            Ok(film)
-        }
-        (None, old) => {
-            drop(old);
-            Film::new(size)
-        }
-    }
 }

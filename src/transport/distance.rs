@@ -9,13 +9,15 @@
 //! What a guide is made from (the probes, a point of a light) is fixed before either strategy
 //! draws.
 
+use glam::Vec3A;
+
 use super::{
     probes::Line,
     strategy::{Distance, ScatterProbability, Strategy},
     tracking::{self, Event, Flight},
 };
 use crate::{
-    math::{PathRng, Rgb, Slot},
+    math::{PathRng, Ray, Rgb, Slot},
     sampling::{equiangular::Equiangular, mis},
     volume::world::MediumRay,
 };
@@ -57,26 +59,56 @@ impl Guide {
     fn pdf(&self, t: f32) -> f32 {
         let line = self.line.as_ref().map(|line| line.pdf(t));
         let light = self.light.as_ref().map(|light| light.pdf(t));
-        match (line, light) {
-            (Some(line), Some(light)) => 0.5 * (line + light),
-            (one, None) | (None, one) => one.unwrap_or(0.0),
-        }
+        pdf_of_both(line, light)
     }
+}
 
-    /// How many guided flights a ray from the camera gets on average. The noise of a pixel is about
-    /// in proportion to its light, so that the picture's falls fastest for the same effort where
-    /// each gets flights in that proportion; fewer where an unguided one finds all the light as
-    /// well, as in a cloud; and some at least.
-    fn flights(&self, strategy: &Strategy, mean_light: f32) -> f32 {
-        let Some(line) = &self.line else { return 1.0 };
-        let least = match strategy.advanced.distance {
-            Distance::Probes => 1.0,
-            _ => line.transmittance().max(LEAST_FLIGHTS),
-        };
+/// The density of a guide from those of its parts.
+pub(super) fn pdf_of_both(line: Option<f32>, light: Option<f32>) -> f32 {
+    match (line, light) {
+        (Some(line), Some(light)) => 0.5 * (line + light),
+        (one, None) | (None, one) => one.unwrap_or(0.0),
+    }
+}
+
+/// The place on a ray between two parameters from which points of lights are chosen.
+pub(super) fn middle(ray: &Ray, t0: f32, t1: f32) -> Vec3A {
+    ray.at(if t1.is_finite() { 0.5 * (t0 + t1) } else { t0 })
+}
+
+/// How the flights of a camera ray share what both kinds can bring, scattering.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sharing {
+    /// Guided flights on average.
+    pub(super) flights: f32,
+    /// Whether they bring all of it; else both kinds do, by MIS.
+    pub(super) alone: bool,
+}
+
+impl Sharing {
+    /// How many guided flights pay, where the guides are those of `line`. The noise of a pixel is
+    /// about in proportion to its light, so that the picture's falls fastest for the same effort
+    /// where each gets flights in that proportion; fewer where an unguided one finds all the light
+    /// as well, as in a cloud; and some at least. `mean_light` is the radiance scattered into rays
+    /// from the camera on average.
+    pub(super) fn new(strategy: &Strategy, line: Option<&Line>, mean_light: f32) -> Self {
+        let alone = strategy.advanced.distance == Distance::Probes;
+        let Some(line) = line else { return Self { flights: 1.0, alone } };
+        let least = if alone { 1.0 } else { line.transmittance().max(LEAST_FLIGHTS) };
         let wanted = line.light() / mean_light * (line.missed() / MUCH_MISSED).min(1.0);
-        match strategy.advanced.scatter_probability {
+        let flights = match strategy.advanced.scatter_probability {
             ScatterProbability::Light if wanted.is_finite() => wanted.clamp(least, MOST_FLIGHTS),
             _ => least,
+        };
+        Self { flights, alone }
+    }
+
+    /// The factor of a scattering event of either kind, whose weight is over `pdf_null`.
+    fn weight(&self, pdf_null: f32, pdf_guided: f32, is_null: bool) -> f32 {
+        match self.alone {
+            false => mis::mixture([1.0, self.flights], [pdf_null, pdf_guided]),
+            true if is_null || pdf_guided <= 0.0 => 0.0,
+            true => pdf_null / (pdf_guided * self.flights),
         }
     }
 }
@@ -120,15 +152,14 @@ pub(super) fn null_or_guided(
 }
 
 /// The flights along a ray from the camera: one that is unguided, and guided ones, more of them
-/// where more light is scattered into the ray. They share what both kinds can bring, scattering;
-/// the unguided one brings all else.
+/// where more light is scattered into the ray. They share scattering; the unguided one brings all
+/// else.
 ///
 /// With n guided flights on average the guided density counts n times in the balance heuristic;
 /// they are drawn from one number, evenly apart.
 pub(super) struct Fan<'g> {
     guide: &'g Guide,
-    /// Guided flights on average.
-    mean: f32,
+    sharing: Sharing,
     /// Guided flights.
     count: u32,
     /// The number that places them.
@@ -143,12 +174,12 @@ impl<'g> Fan<'g> {
         mean_light: f32,
         rng: &mut PathRng,
     ) -> Self {
-        let mean = guide.flights(strategy, mean_light);
-        let whole = mean.floor();
-        let more = mean > whole && rng.uniform() < mean - whole;
+        let sharing = Sharing::new(strategy, guide.line.as_ref(), mean_light);
+        let whole = sharing.flights.floor();
+        let more = sharing.flights > whole && rng.uniform() < sharing.flights - whole;
         let count = whole as u32 + u32::from(more);
         let offset = if count > 0 { rng.at(Slot::GuidedDistance) } else { 0.0 };
-        Self { guide, mean, count, offset }
+        Self { guide, sharing, count, offset }
     }
 
     /// Where the guided flights end.
@@ -169,8 +200,7 @@ impl<'g> Fan<'g> {
         throughput: Rgb,
         rng: &mut PathRng,
     ) -> Flight {
-        let flight = tracking::fill(medium, strategy, throughput, t, rng);
-        self.weighed(flight, strategy, false)
+        self.weighed(tracking::fill(medium, strategy, throughput, t, rng), false)
     }
 
     /// The unguided one.
@@ -181,22 +211,13 @@ impl<'g> Fan<'g> {
         throughput: Rgb,
         rng: &mut PathRng,
     ) -> Flight {
-        self.weighed(null(medium, strategy, throughput, rng), strategy, true)
+        self.weighed(null(medium, strategy, throughput, rng), true)
     }
 
-    fn weighed(&self, mut flight: Flight, strategy: &Strategy, is_null: bool) -> Flight {
+    fn weighed(&self, mut flight: Flight, is_null: bool) -> Flight {
         if let Event::Scattered { t, .. } = flight.event {
-            let pdf = self.guide.pdf(t);
-            flight.weight *= match strategy.advanced.distance {
-                Distance::Probes => alone(flight.pdf_null, pdf, is_null) / self.mean,
-                _ => mis::mixture([1.0, self.mean], [flight.pdf_null, pdf]),
-            };
+            flight.weight *= self.sharing.weight(flight.pdf_null, self.guide.pdf(t), is_null);
         }
         flight
     }
-}
-
-/// The factor of a scattering event where guides alone may draw it.
-fn alone(pdf_null: f32, pdf_guided: f32, is_null: bool) -> f32 {
-    if is_null || pdf_guided <= 0.0 { 0.0 } else { pdf_null / pdf_guided }
 }

@@ -8,6 +8,7 @@ pub mod observer;
 mod optimal;
 pub mod path;
 pub mod probes;
+pub mod profile;
 pub mod scene;
 pub mod strategy;
 mod stratified;
@@ -78,11 +79,22 @@ pub struct Frame {
 
 impl Frame {
     /// Frames `scene` on a film of `size` pixels; `seed` chooses the random numbers of the whole
-    /// picture. Probes are placed where they are asked for, and with the optimal majorant a few milliseconds go into finding how often it looks,
-    /// both whatever the seed.
+    /// picture. Probes are placed where they are asked for, and with the optimal majorant a few
+    /// milliseconds go into finding how often it looks, both whatever the seed.
     pub fn new(scene: Arc<Scene>, size: UVec2, seed: u64) -> Self {
-        let gatherer = Gatherer::new(&scene, size);
         let probes = Probes::new(&scene).map(Arc::new);
+        Self::with_probes(scene, size, seed, probes)
+    }
+
+    /// The same with probes placed before, which have to be those of the scene, or without any:
+    /// they change the noise of the picture and not its mean.
+    pub fn with_probes(
+        scene: Arc<Scene>,
+        size: UVec2,
+        seed: u64,
+        probes: Option<Arc<Probes>>,
+    ) -> Self {
+        let gatherer = Gatherer::new(&scene, size);
         let mean_light = probes.as_ref().map_or(0.0, |probes| probes.mean_light(&scene, size));
         Self { scene, size, seed, gatherer, probes, mean_light }
     }

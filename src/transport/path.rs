@@ -241,7 +241,7 @@ impl Path<'_> {
             return Guide::new(line, None);
         }
         if self.scatters == 0 {
-            let middle = self.ray.at(if t1.is_finite() { 0.5 * (t0 + t1) } else { t0 });
+            let middle = distance::middle(&self.ray, t0, t1);
             let from = Receiver { position: middle, normal: None };
             self.light = direct::point_of_light(self.scene, &from, rng);
         }

@@ -13,6 +13,7 @@ mod halo;
 mod line;
 mod octree;
 mod probe;
+mod view;
 
 use glam::{UVec2, Vec2, Vec3A};
 use rayon::prelude::*;
@@ -20,7 +21,7 @@ use rayon::prelude::*;
 use super::{
     emission::Gatherer,
     scene::Scene,
-    strategy::{Distance, Strategy},
+    strategy::{Advanced, Distance, Strategy},
 };
 use crate::{
     math::{Aabb, PathRng, Ray, mean},
@@ -31,6 +32,7 @@ pub use line::Line;
 use line::{LineBuilder, Stretch};
 use octree::{Octree, child_of};
 use probe::Probe;
+pub use view::ProbeView;
 
 /// Levels that are cut wherever a volume may scatter.
 const FIRST_LEVELS: u32 = 3;
@@ -64,10 +66,12 @@ impl Probes {
     /// The probes for `scene`, if its strategy asks for any and anything scatters. The same scene
     /// always gets the same ones.
     pub fn new(scene: &Scene) -> Option<Self> {
-        let Strategy { probe_mis, advanced, .. } = scene.strategy;
-        if !probe_mis || advanced.distance == Distance::Null {
-            return None;
-        }
+        Self::unless(scene, &|| false)
+    }
+
+    /// The same, but given up, with `None`, once `stop` says so.
+    pub fn unless(scene: &Scene, stop: &(dyn Fn() -> bool + Sync)) -> Option<Self> {
+        let Advanced { probe_count, .. } = Self::recipe(&scene.strategy)?.advanced;
         let (bounds, scattering) = support(scene)?;
         let octree = Octree::new(&bounds);
         let cube = octree.bounds();
@@ -76,14 +80,54 @@ impl Probes {
         let scattered = halo::scattered_share(scene);
         let mut probes =
             Self { octree, probes: vec![first], outside: 0.0, mean_cosine: 0.0, scattered };
-        probes.refine(&builder, advanced.probe_count);
+        probes.refine(&builder, probe_count, stop)?;
         probes.outside = OUTSIDE * probes.mean_radiance();
         probes.mean_cosine = probes.weighted_cosine();
         Some(probes)
     }
 
-    /// Cuts leaves level by level where they stand for more than their part of the light.
-    fn refine(&mut self, builder: &Builder<'_>, count: u32) {
+    /// What of a strategy decides the probes, all else put to its default: strategies that agree in
+    /// it have the same. `None` where it asks for none.
+    pub fn recipe(strategy: &Strategy) -> Option<Strategy> {
+        let asks = strategy.probe_mis && strategy.advanced.distance != Distance::Null;
+        let plain = Strategy::default();
+        let aside = plain.advanced;
+        asks.then_some(Strategy {
+            emission_decoupling: plain.emission_decoupling,
+            emission_ratio_tracking: plain.emission_ratio_tracking,
+            majorant_boost: plain.majorant_boost,
+            advanced: Advanced {
+                boost_mode: aside.boost_mode,
+                boost_amount: aside.boost_amount,
+                boost_clamp_voxels: aside.boost_clamp_voxels,
+                distance: aside.distance,
+                scatter_probability: aside.scatter_probability,
+                guide_all_vertices: aside.guide_all_vertices,
+                equiangular: aside.equiangular,
+                guide_directions: aside.guide_directions,
+                low_discrepancy: aside.low_discrepancy,
+                ..strategy.advanced
+            },
+            ..*strategy
+        })
+    }
+
+    /// Whether the probes of `scene` are placed around its camera: in a fog without borders.
+    pub fn heed_camera(scene: &Scene) -> bool {
+        let mut instances = scene.world.instances().iter();
+        instances.any(|instance| {
+            instance.volume().substance().scatters() && !is_finite(instance.bounds())
+        })
+    }
+
+    /// Cuts leaves level by level where they stand for more than their part of the light; `None`
+    /// when stopped.
+    fn refine(
+        &mut self,
+        builder: &Builder<'_>,
+        count: u32,
+        stop: &(dyn Fn() -> bool + Sync),
+    ) -> Option<()> {
         let mut level = vec![(0, self.octree.bounds())];
         let mut power: f32 = self.power_of(&level[0]);
         for depth in 0..octree::DEEPEST {
@@ -100,12 +144,14 @@ impl Probes {
                 break;
             }
             level = split.iter().flat_map(|leaf| self.split(leaf)).collect();
-            let probes: Vec<Probe> =
-                level.par_iter().map(|(node, bounds)| builder.probe(*node, bounds)).collect();
-            self.probes.extend(probes);
+            let place =
+                |(node, bounds): &(u32, Aabb)| (!stop()).then(|| builder.probe(*node, bounds));
+            let probes: Option<Vec<Probe>> = level.par_iter().map(place).collect();
+            self.probes.extend(probes?);
             let sum = |leaves: &[(u32, Aabb)]| leaves.iter().map(|l| self.power_of(l)).sum::<f32>();
             power += sum(&level) - sum(&split);
         }
+        Some(())
     }
 
     /// The children of a leaf.
@@ -255,9 +301,8 @@ fn support(scene: &Scene) -> Option<(Aabb, Vec<Aabb>)> {
         .filter(|instance| instance.volume().substance().scatters())
         .map(|instance| *instance.bounds())
         .collect();
-    let finite = |b: &Aabb| b.min.is_finite() && b.max.is_finite() && !b.is_empty();
-    let mut all = scattering.iter().filter(|b| finite(b)).fold(Aabb::EMPTY, |a, b| a.union(b));
-    if !scattering.iter().all(finite) {
+    let mut all = scattering.iter().filter(|b| is_finite(b)).fold(Aabb::EMPTY, |a, b| a.union(b));
+    if !scattering.iter().all(is_finite) {
         let camera = scene.camera.position();
         all = all.union(&Aabb::new(camera, camera));
         let lights = scene.lights.emitters(&scene.world);
@@ -267,6 +312,10 @@ fn support(scene: &Scene) -> Option<(Aabb, Vec<Aabb>)> {
         let margin = Vec3A::splat((0.5 * all.diagonal()).max(1.0));
         all = Aabb::new(all.min - margin, all.max + margin);
     }
-    let usable = !scattering.is_empty() && finite(&all) && all.diagonal() > 0.0;
+    let usable = !scattering.is_empty() && is_finite(&all) && all.diagonal() > 0.0;
     (usable && all.size().max_element().is_finite()).then_some((all, scattering))
+}
+
+fn is_finite(bounds: &Aabb) -> bool {
+    bounds.min.is_finite() && bounds.max.is_finite() && !bounds.is_empty()
 }

@@ -121,6 +121,16 @@ impl World {
         &self.instances
     }
 
+    /// Whether both have the same volumes in the same places, as scenes built from one cache do
+    /// while only other things change.
+    pub fn has_volumes_of(&self, other: &Self) -> bool {
+        let same = |(a, b): (&Instance, &Instance)| {
+            Arc::ptr_eq(&a.volume, &b.volume) && a.world_from_local == b.world_from_local
+        };
+        self.instances.len() == other.instances.len()
+            && std::iter::zip(&self.instances, &other.instances).all(same)
+    }
+
     /// The medium along `ray` up to `t_max`, which may be infinite.
     pub fn along(&self, ray: Ray, t_max: f32) -> MediumRay<'_> {
         let mut entries = SmallVec::new();

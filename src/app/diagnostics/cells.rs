@@ -1,12 +1,14 @@
 //! The strongest cells of a scene's volumes, gathered behind the window's back.
 
-use std::sync::{Arc, mpsc};
+use std::sync::Arc;
 
 use glam::Vec3A;
 
+use super::background::Background;
 use super::{CellValue, Scale};
 use crate::math::Aabb;
 use crate::transport::Scene;
+use crate::transport::probes::Probes;
 use crate::volume::body::{Bounds, Region};
 use crate::volume::world::Instance;
 
@@ -25,10 +27,14 @@ pub struct Cell {
 }
 
 impl Cell {
-    fn new(instance: &Instance, local: &Aabb, value: f32) -> Self {
-        let world_from_local = instance.world_from_local();
-        let corners = local.corners().map(|corner| world_from_local.transform_point3a(corner));
-        let volume = f64::from(local.size().element_product()) * instance.world_volume();
+    fn new(candidate: &Candidate<'_>) -> Self {
+        let Candidate { instance, local, value } = *candidate;
+        let (mut corners, mut volume) =
+            (local.corners(), f64::from(local.size().element_product()));
+        if let Some(instance) = instance {
+            corners = corners.map(|corner| instance.world_from_local().transform_point3a(corner));
+            volume *= instance.world_volume();
+        }
         Self { corners, edge: volume.cbrt() as f32, value }
     }
 
@@ -52,11 +58,24 @@ impl Cells {
     pub fn gather(instances: &[Instance], value: CellValue) -> Self {
         let mut sieve = Sieve::default();
         for instance in instances {
-            visit(instance, value, |local, value| sieve.push(instance, local, value));
+            visit(instance, value, |local, value| sieve.push(Some(instance), local, value));
         }
-        let strongest = sieve.finish();
-        let strongest = strongest.iter().map(|c| Cell::new(c.instance, &c.local, c.value));
-        Self { strongest: strongest.collect(), total: sieve.total }
+        Self::sifted(sieve)
+    }
+
+    /// The probes by their scores towards an eye.
+    fn of_probes(probes: &Probes, eye: Vec3A) -> Self {
+        let mut sieve = Sieve::default();
+        probes.for_each(|probe| {
+            let direction = (probe.bounds.center() - eye).normalize_or(Vec3A::X);
+            sieve.push(None, &probe.bounds, probe.score(direction));
+        });
+        Self::sifted(sieve)
+    }
+
+    fn sifted(mut sieve: Sieve<'_>) -> Self {
+        let strongest = sieve.finish().iter().map(Cell::new).collect();
+        Self { strongest, total: sieve.total }
     }
 
     /// The scale from the weakest to the strongest of them; none without cells.
@@ -78,6 +97,7 @@ fn visit(instance: &Instance, value: CellValue, mut found: impl FnMut(&Aabb, f32
                 found(&volume.region().bounds(), majorant.mu_t);
             }
         }
+        (CellValue::Probes, _) => {}
         (CellValue::Energy, _) => {
             if let Some(energy) = volume.energy() {
                 energy.for_each_cell(|cell, power| {
@@ -98,13 +118,14 @@ struct Sieve<'a> {
 }
 
 struct Candidate<'a> {
-    instance: &'a Instance,
+    /// Whose space it is given in; the world's if none.
+    instance: Option<&'a Instance>,
     local: Aabb,
     value: f32,
 }
 
 impl<'a> Sieve<'a> {
-    fn push(&mut self, instance: &'a Instance, local: &Aabb, value: f32) {
+    fn push(&mut self, instance: Option<&'a Instance>, local: &Aabb, value: f32) {
         if !(value > 0.0 && value.is_finite()) {
             return;
         }
@@ -134,79 +155,55 @@ impl<'a> Sieve<'a> {
     }
 }
 
-/// Gathers cells on another thread, again whenever the volumes change, and keeps the last ones
-/// until then.
+/// Gathers cells behind the window's back.
 #[derive(Default)]
-pub struct Gathering {
-    done: Option<(Source, Cells)>,
-    under_way: Option<mpsc::Receiver<(Source, Cells)>>,
-}
+pub struct Gathering(Background<Source, Cells>);
 
 /// What cells are gathered from.
 #[derive(Clone)]
-struct Source {
-    value: CellValue,
-    scene: Arc<Scene>,
+pub struct Source {
+    /// What they are colored by.
+    pub value: CellValue,
+    /// Has the volumes and the camera.
+    pub scene: Arc<Scene>,
+    /// Those of the scene, where they are wanted and there.
+    pub probes: Option<Arc<Probes>>,
 }
 
 impl Source {
-    /// Whether both have the same volumes in the same places; a scene that only the camera or the
-    /// strategy changed shares them.
+    fn gather(&self) -> Cells {
+        match self.value {
+            CellValue::Probes => match &self.probes {
+                Some(probes) => Cells::of_probes(probes, self.scene.camera.position()),
+                None => Cells::default(),
+            },
+            value => Cells::gather(self.scene.world.instances(), value),
+        }
+    }
+
+    /// Whether both have the same cells: the same volumes in the same places, which a scene has
+    /// that only the camera or the strategy changed; or the same probes, seen from the same place.
     fn has_cells_of(&self, other: &Self) -> bool {
-        let (a, b) = (self.scene.world.instances(), other.scene.world.instances());
-        let same = |(a, b): (&Instance, &Instance)| {
-            Arc::ptr_eq(a.volume(), b.volume()) && a.world_from_local() == b.world_from_local()
-        };
         self.value == other.value
-            && (Arc::ptr_eq(&self.scene, &other.scene)
-                || (a.len() == b.len() && std::iter::zip(a, b).all(same)))
+            && match self.value {
+                CellValue::Probes => {
+                    self.probes.as_ref().map(Arc::as_ptr) == other.probes.as_ref().map(Arc::as_ptr)
+                        && self.scene.camera.position() == other.scene.camera.position()
+                }
+                _ => self.scene.world.has_volumes_of(&other.scene.world),
+            }
     }
 }
 
 impl Gathering {
-    /// Brings the cells in line with what is wanted of `scene`; `wake` is called when they are
-    /// there.
-    pub fn update(
-        &mut self,
-        wanted: Option<CellValue>,
-        scene: Option<&Arc<Scene>>,
-        wake: impl FnOnce() + Send + 'static,
-    ) {
-        let (Some(value), Some(scene)) = (wanted, scene) else {
-            *self = Self::default();
-            return;
-        };
-        if let Some(receiver) = &self.under_way {
-            match receiver.try_recv() {
-                Ok(done) => self.done = Some(done),
-                Err(mpsc::TryRecvError::Empty) => return,
-                // The thread failed; the next line tries again only if the cells are missing.
-                Err(mpsc::TryRecvError::Disconnected) => {}
-            }
-            self.under_way = None;
-        }
-        let source = Source { value, scene: scene.clone() };
-        match &mut self.done {
-            // The newer scene lets go of the older one.
-            Some((known, _)) if known.has_cells_of(&source) => *known = source,
-            _ => self.start(source, wake),
-        }
-    }
-
-    fn start(&mut self, source: Source, wake: impl FnOnce() + Send + 'static) {
-        let (sender, receiver) = mpsc::channel();
-        rayon::spawn(move || {
-            let cells = Cells::gather(source.scene.world.instances(), source.value);
-            // The window may have closed.
-            let _ = sender.send((source, cells));
-            wake();
-        });
-        self.under_way = Some(receiver);
+    /// Brings the cells in line with what is wanted; `wake` is called when they are there.
+    pub fn update(&mut self, wanted: Option<Source>, wake: impl FnOnce() + Send + 'static) {
+        self.0.update(wanted, Source::has_cells_of, Source::gather, wake);
     }
 
     /// The cells gathered last, if they are of the value wanted.
     pub fn cells(&self, wanted: Option<CellValue>) -> Option<(CellValue, &Cells)> {
-        let (source, cells) = self.done.as_ref()?;
+        let (source, cells) = self.0.done()?;
         (wanted == Some(source.value)).then_some((source.value, cells))
     }
 }
@@ -285,7 +282,7 @@ density = { scale = 0.1 }
     #[test]
     fn only_the_strongest_of_many_are_kept_and_all_are_counted() {
         let scene = scene();
-        let instance = &scene.world.instances()[1];
+        let instance = Some(&scene.world.instances()[1]);
         let mut sieve = Sieve::default();
         let unit = Aabb::centered(Vec3A::ONE);
         let count = 5 * MOST;
@@ -309,7 +306,8 @@ density = { scale = 0.1 }
         let cache = VolumeCache::default();
         let mut source = || {
             let scene = build(&settings, &cache, NO_PROGRESS).unwrap();
-            let source = Source { value: CellValue::Majorant, scene: Arc::new(scene) };
+            let source =
+                Source { value: CellValue::Majorant, scene: Arc::new(scene), probes: None };
             settings.camera.position[0] += 1.0;
             source
         };
@@ -318,5 +316,39 @@ density = { scale = 0.1 }
         settings.volume[0].translate[2] = 1.0;
         let scene = Arc::new(build(&settings, &cache, NO_PROGRESS).unwrap());
         assert!(!first.has_cells_of(&Source { scene, ..second }));
+    }
+
+    /// The probes tile their cube, and score what they scatter towards the eye.
+    #[test]
+    fn probes_lie_in_their_cube_and_follow_the_eye() {
+        let mut settings = settings();
+        for volume in &mut settings.volume {
+            volume.albedo = crate::scene::settings::Albedo::Gray(0.5);
+        }
+        let scene = build(&settings, &VolumeCache::default(), NO_PROGRESS).unwrap();
+        let probes = Probes::new(&scene).map(Arc::new);
+        let scene = Arc::new(scene);
+        let source = Source { value: CellValue::Probes, scene, probes };
+        let mut volume = 0.0;
+        let mut count = 0;
+        source.probes.as_ref().unwrap().for_each(|probe| {
+            volume += f64::from(probe.bounds.size().element_product());
+            count += 1;
+        });
+        let fog_around = 1e3;
+        assert!(volume > fog_around && count > 100, "{count} probes fill {volume}");
+        let cells = source.gather();
+        assert!(cells.total > 100 && cells.total <= count, "{} of {count}", cells.total);
+        let mut moved = (*source.scene).clone();
+        moved.camera = crate::transport::camera::Camera::look_at(
+            Vec3A::new(9.0, 1.0, 2.0),
+            Vec3A::ZERO,
+            Vec3A::Z,
+            40.0,
+        )
+        .unwrap();
+        let moved = Source { scene: Arc::new(moved), ..source.clone() };
+        assert!(!source.has_cells_of(&moved) && source.has_cells_of(&source.clone()));
+        assert!(!source.has_cells_of(&Source { probes: None, ..source.clone() }));
     }
 }

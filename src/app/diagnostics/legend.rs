@@ -30,16 +30,19 @@ impl Legend {
 
     /// Of the cells over the picture.
     pub fn of_cells(value: CellValue, cells: &Cells) -> Self {
-        let (title, none) = match value {
-            CellValue::Majorant => ("Majorant, 1/length", "No volume here has borders."),
-            CellValue::Energy => ("Emitted power per cell", "No volume here emits light."),
+        let (title, none, what) = match value {
+            CellValue::Majorant => ("Majorant, 1/length", "No volume here has borders.", "cell"),
+            CellValue::Energy => ("Emitted power per cell", "No volume here emits light.", "cell"),
+            CellValue::Probes => {
+                ("Scattered light, radiance/length", "No probe here has light.", "probe")
+            }
         };
         let (shown, total) = (cells.strongest.len(), cells.total);
         let note = match (shown, total) {
             (0, _) => none.to_owned(),
-            (1, 1) => "One cell".to_owned(),
-            _ if shown == total => format!("All {total} cells"),
-            _ => format!("The strongest {shown} of {total} cells"),
+            (1, 1) => format!("One {what}"),
+            _ if shown == total => format!("All {total} {what}s"),
+            _ => format!("The strongest {shown} of {total} {what}s"),
         };
         Self { title, scale: cells.scale(), note }
     }

@@ -5,9 +5,9 @@ use egui::Ui;
 use super::{explain, folded_section};
 use crate::app::diagnostics::{CellValue, Wanted};
 use crate::app::theme::space;
-use crate::app::widgets::{row, segments};
+use crate::app::widgets::{row_label, segments};
 
-const CELLS: [(Option<CellValue>, &str, &str); 3] = [
+const CELLS: [(Option<CellValue>, &str, &str); 4] = [
     (None, "Off", "Only the picture."),
     (
         Some(CellValue::Majorant),
@@ -20,6 +20,12 @@ const CELLS: [(Option<CellValue>, &str, &str); 3] = [
         "Energy",
         "The power that each cell emits: how often fire as a light looks towards it.",
     ),
+    (
+        Some(CellValue::Probes),
+        "Probes",
+        "What each light probe thinks is scattered towards the camera: where on a ray scattering \
+         pays.",
+    ),
 ];
 
 /// Shows the section.
@@ -28,7 +34,8 @@ pub fn show(ui: &mut Ui, wanted: &mut Wanted) {
         let choices = CELLS.map(|(_, name, help)| (name, help));
         let chosen = CELLS.iter().position(|(cells, ..)| *cells == wanted.cells);
         let help = "Draws the cells that the volumes are divided into over the picture.";
-        let clicked = row(ui, "Cells", help, |ui| segments(ui, &choices, chosen)).inner;
+        row_label(ui, "Cells", help);
+        let clicked = ui.name_inputs("Cells", |ui| segments(ui, &choices, chosen));
         if let Some((cells, ..)) = clicked.and_then(|index| CELLS.get(index)) {
             wanted.cells = *cells;
         }
@@ -37,5 +44,10 @@ pub fn show(ui: &mut Ui, wanted: &mut Wanted) {
                     pixel. Saved in an EXR as the channel steps.";
         ui.checkbox(&mut wanted.steps, "Map of tracking steps").on_hover_text(help);
         explain(ui, "Shows what each pixel costs in place of the picture.");
+        ui.add_space(space::TIGHT);
+        let help = "What lies along the ray of a pixel, and where on it the strategies scatter, \
+                    with which MIS weights.";
+        ui.checkbox(&mut wanted.ray, "Inspect a ray").on_hover_text(help);
+        explain(ui, "Click a pixel of the picture to look into its ray.");
     });
 }

@@ -53,6 +53,11 @@ impl Octree {
         first
     }
 
+    /// The first of a node's eight children, which follow each other; `None` for leaves.
+    pub(super) fn first_child(&self, node: u32) -> Option<u32> {
+        self.children.get(node as usize).copied().filter(|&child| child != 0)
+    }
+
     /// The leaf of `ray` at parameter `t`, and where it leaves it.
     pub(super) fn locate(&self, ray: &Ray, t: f32) -> Place {
         const CELLS: f32 = (1 << DEEPEST) as f32;

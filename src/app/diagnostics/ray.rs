@@ -1,0 +1,262 @@
+//! The ray of a pixel, looked into: what lies along it and how distances are drawn there.
+
+use std::sync::Arc;
+
+use egui::{Color32, Context, CursorIcon, Grid, Label, RichText, Sense, Stroke, Ui, pos2, vec2};
+use glam::{UVec2, Vec2};
+
+use super::background::Background;
+use super::{plots, to_window};
+use crate::app::engine::Engine;
+use crate::app::theme::{color, space};
+use crate::app::viewport::View;
+use crate::app::widgets::significant;
+use crate::transport::Scene;
+use crate::transport::probes::Probes;
+use crate::transport::profile::{Profile, Row};
+
+/// Rows of the table behind the curves.
+const ROWS: u32 = 300;
+/// Radius of the mark around the pixel in points, at least.
+const MARK: f32 = 6.0;
+/// Room for the name of a curve and for its value.
+const COLUMNS: [f32; 2] = [110.0, 50.0];
+/// Height of a row of the legend.
+const ROW: f32 = 15.0;
+
+/// A curve as the legend explains it.
+pub struct Curve {
+    /// What it shows.
+    pub name: &'static str,
+    /// The unit of its values.
+    pub unit: &'static str,
+    /// What it means.
+    pub help: &'static str,
+    /// Its color.
+    pub color: Color32,
+    /// Its value in a row.
+    pub value: fn(&Row) -> f32,
+}
+
+/// The curves over 1/length.
+pub const DENSITIES: [Curve; 3] = [
+    Curve {
+        name: "Extinction",
+        unit: "1/length",
+        help: "μ_t: how much the medium takes from a ray per length, by absorbing and scattering.",
+        color: color::CURVE,
+        value: |row| row.mu_t,
+    },
+    Curve {
+        name: "Drawn by chance",
+        unit: "1/length",
+        help: "p_null = μ_t T: the density with which null-collision tracking scatters here.",
+        color: color::CURVE_CHANCE,
+        value: |row| row.p_null,
+    },
+    Curve {
+        name: "Drawn by probes",
+        unit: "1/length",
+        help: "p_select: the density with which probes and equal angles scatter here.",
+        color: color::CURVE_PROBES,
+        value: |row| row.p_select,
+    },
+];
+
+/// The curves from 0 to 1; the emission as a share of its peak.
+pub const SHARES: [Curve; 4] = [
+    Curve {
+        name: "Transmittance",
+        unit: "",
+        help: "T: the share of light that comes through from here to the camera.",
+        color: color::CURVE,
+        value: |row| row.transmittance,
+    },
+    Curve {
+        name: "Emission",
+        unit: "radiance/length",
+        help: "ε: the radiance that the medium emits per length. Its curve is a share of its peak.",
+        color: color::CURVE_GLOW,
+        value: |row| row.emission,
+    },
+    Curve {
+        name: "Weight of chance",
+        unit: "",
+        help: "The MIS weight of scattering that null-collision tracking finds here.",
+        color: color::CURVE_CHANCE,
+        value: |row| row.weight_null,
+    },
+    Curve {
+        name: "Weight of probes",
+        unit: "",
+        help: "The MIS weight of scattering that probes and equal angles find here.",
+        color: color::CURVE_PROBES,
+        value: |row| row.weight_guided,
+    },
+];
+
+/// What the ray is looked into with.
+#[derive(Clone)]
+struct Source {
+    scene: Arc<Scene>,
+    probes: Option<Arc<Probes>>,
+    pixel: UVec2,
+    /// Of the picture.
+    size: UVec2,
+}
+
+impl Source {
+    fn same(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.scene, &other.scene)
+            && self.probes.as_ref().map(Arc::as_ptr) == other.probes.as_ref().map(Arc::as_ptr)
+            && (self.pixel, self.size) == (other.pixel, other.size)
+    }
+
+    fn profile(&self) -> Option<Profile> {
+        let ray = self.scene.camera.ray(self.size, self.pixel, Vec2::splat(0.5));
+        Profile::along(&self.scene, self.probes.as_deref(), self.size, &ray, ROWS)
+    }
+}
+
+/// The picked pixel and what is known of its ray.
+#[derive(Default)]
+pub struct Inspector {
+    /// Where in the picture, in shares of its sides.
+    picked: Option<Vec2>,
+    profile: Background<Source, Option<Profile>>,
+    /// The distance whose values are read.
+    at: Option<f32>,
+}
+
+impl Inspector {
+    /// Brings the table in line with pixel and scene; forgets both unless `wanted`.
+    pub fn update(&mut self, ctx: &Context, wanted: bool, engine: &Engine) {
+        if !wanted {
+            *self = Self::default();
+            return;
+        }
+        let size = engine.picture().map(|picture| picture.size);
+        let built = engine.built().map(|built| built.scene.clone());
+        let source = self.picked.zip(size).zip(built).map(|((picked, size), scene)| {
+            let pixel = (picked * size.as_vec2()).as_uvec2().min(size - UVec2::ONE);
+            Source { scene, probes: engine.probes(), pixel, size }
+        });
+        let wake = ctx.clone();
+        self.profile.update(source, Source::same, Source::profile, move || wake.request_repaint());
+    }
+
+    /// Picks the pixel that is clicked, marks it and shows what lies along its ray; whether to go
+    /// on.
+    pub fn show(&mut self, ui: &mut Ui, view: &View) -> bool {
+        if view.hovered {
+            ui.set_cursor_icon(CursorIcon::Crosshair);
+        }
+        if let Some(pixel) = view.clicked {
+            self.picked = Some((pixel.as_vec2() + 0.5) / view.size.as_vec2());
+            self.at = None;
+            ui.ctx().request_repaint();
+        }
+        let Some(picked) = self.picked else { return true };
+        mark(ui, view, picked * view.size.as_vec2());
+        let mut open = true;
+        let room = view.rect.shrink(f32::from(space::PANEL));
+        egui::Window::new("Ray")
+            .open(&mut open)
+            .resizable(false)
+            .collapsible(false)
+            .constrain_to(view.rect)
+            .pivot(egui::Align2::RIGHT_BOTTOM)
+            .default_pos(room.right_bottom())
+            .show(ui.ctx(), |ui| self.contents(ui));
+        open
+    }
+
+    fn contents(&mut self, ui: &mut Ui) {
+        let Some((source, profile)) = self.profile.done() else {
+            ui.label("Looking …");
+            return;
+        };
+        let UVec2 { x, y } = source.pixel;
+        let Some(profile) = profile else {
+            ui.label(format!("Pixel {x}, {y}: this ray meets no medium."));
+            return;
+        };
+        let depth = significant(f64::from(profile.optical_depth));
+        let guided = if profile.guided { "" } else { ", no probes" };
+        ui.label(format!("Pixel {x}, {y}: optical depth {depth}{guided}"));
+        let at = self.at.unwrap_or_else(|| most_telling(&profile.rows));
+        let read = ui
+            .horizontal_top(|ui| {
+                let read = ui.vertical(|ui| plots::show(ui, &profile.rows, at)).inner;
+                ui.vertical(|ui| readout(ui, row_at(&profile.rows, read.unwrap_or(at))));
+                read
+            })
+            .inner;
+        self.at = read.or(self.at);
+    }
+}
+
+/// The distance where most is drawn, or else most glows.
+fn most_telling(rows: &[Row]) -> f32 {
+    let by = |value: fn(&Row) -> f32| {
+        let most = rows.iter().max_by(|a, b| value(a).total_cmp(&value(b)));
+        most.filter(|row| value(row) > 0.0).map(|row| row.t)
+    };
+    by(|row| row.p_null)
+        .or_else(|| by(|row| row.emission))
+        .or_else(|| rows.first().map(|row| row.t))
+        .unwrap_or_default()
+}
+
+/// The row nearest to a distance.
+fn row_at(rows: &[Row], t: f32) -> Row {
+    let nearest = rows.iter().min_by(|a, b| (a.t - t).abs().total_cmp(&(b.t - t).abs()));
+    nearest.copied().unwrap_or_default()
+}
+
+/// The legend, with the values of one row.
+fn readout(ui: &mut Ui, row: Row) {
+    ui.spacing_mut().item_spacing = vec2(space::ROW, 2.0);
+    let distance = format!("At distance {}", significant(f64::from(row.t)));
+    ui.label(RichText::new(distance).color(color::TEXT_STRONG));
+    ui.add_space(space::TIGHT);
+    for (id, curves) in [DENSITIES.as_slice(), SHARES.as_slice()].into_iter().enumerate() {
+        Grid::new(("ray", id)).num_columns(3).min_row_height(ROW).show(ui, |ui| {
+            for curve in curves {
+                entry(ui, curve, (curve.value)(&row));
+                ui.end_row();
+            }
+        });
+        ui.add_space(space::ROW);
+    }
+}
+
+fn entry(ui: &mut Ui, curve: &Curve, value: f32) {
+    ui.horizontal(|ui| {
+        ui.set_min_width(COLUMNS[0]);
+        let (swatch, _) = ui.allocate_exact_size(vec2(12.0, 14.0), Sense::empty());
+        let line = [swatch.left_center(), swatch.right_center()];
+        ui.painter().line_segment(line, Stroke::new(2.0, curve.color));
+        let name = RichText::new(curve.name).small().color(color::TEXT_DIM);
+        ui.add(Label::new(name)).on_hover_text(curve.help);
+    });
+    let value = significant(f64::from(value));
+    let text = RichText::new(&value).small().color(color::TEXT_STRONG);
+    ui.scope(|ui| {
+        ui.set_min_width(COLUMNS[1]);
+        let spoken = format!("{} {value}", curve.name);
+        let label = ui.label(text);
+        label.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Label, true, &spoken));
+    });
+    ui.add(Label::new(RichText::new(curve.unit).small().color(color::TEXT_DIM)).extend());
+}
+
+/// Marks a place of the picture, given in its pixels.
+fn mark(ui: &Ui, view: &View, at: Vec2) {
+    let center = to_window(view, at);
+    let radius = MARK.max(0.75 * view.placement.scale / view.factor);
+    let painter = ui.painter_at(view.rect);
+    for (width, color) in [(3.0, color::WELL), (1.2, color::TEXT_STRONG)] {
+        painter.circle_stroke(pos2(center.x, center.y), radius, Stroke::new(width, color));
+    }
+}

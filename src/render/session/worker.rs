@@ -1,0 +1,323 @@
+//! The render thread of a session.
+
+use std::sync::atomic::Ordering;
+use std::sync::mpsc::Sender;
+use std::sync::{Arc, PoisonError};
+use std::time::{Duration, Instant};
+
+use glam::UVec2;
+
+use super::{Improvement, Mail, Request, Shared, lock};
+use crate::error::Result;
+use crate::render::engine::{Engine, Step};
+use crate::render::film::Film;
+use crate::render::headless::same_size;
+use crate::render::pool::{Failure, Pool};
+use crate::render::publish::{Picture, StepMap};
+use crate::render::schedule::Limits;
+use crate::transport::PixelSampler;
+
+/// How long a request without a picture is left to get one when the next already waits. Otherwise
+/// a drag whose edits come faster than coarse pictures would show nothing until it ends.
+const PATIENCE: Duration = Duration::from_millis(250);
+
+/// The render thread.
+pub(super) struct Worker {
+    shared: Arc<Shared>,
+    pool: Pool,
+    /// The epoch of the last letter read.
+    epoch: u64,
+    paused: bool,
+    shows_steps: bool,
+    /// Whether steps were asked for since the last picture.
+    owes_steps: bool,
+    job: Option<Active>,
+    seconds_per_path: Option<f64>,
+    snapshots: Vec<Sender<Film>>,
+    /// Pictures published before, to write the next one into once nobody looks at them.
+    spare: Vec<Arc<Picture>>,
+}
+
+/// The request being rendered.
+struct Active {
+    engine: Engine,
+    generation: u64,
+    begun: Instant,
+    failed: bool,
+    shown_final: bool,
+    /// Whether a better sampler is in the making, and the sampler if it is there.
+    awaits: Awaits,
+    /// Paths of the picture shown when it started over, without which it shows none.
+    held_below: u64,
+}
+
+/// How a request stands that may be improved.
+enum Awaits {
+    Nothing,
+    Sampler,
+    /// For the pause to end.
+    Resumption(Arc<dyn PixelSampler>),
+}
+
+impl Active {
+    fn new(engine: Engine, generation: u64, provisional: bool) -> Self {
+        Self {
+            engine,
+            generation,
+            begun: Instant::now(),
+            failed: false,
+            shown_final: false,
+            awaits: if provisional { Awaits::Sampler } else { Awaits::Nothing },
+            held_below: 0,
+        }
+    }
+
+    /// Whether what it samples will not change any more.
+    fn is_settled(&self) -> bool {
+        matches!(self.awaits, Awaits::Nothing)
+    }
+
+    /// Whether there is a picture that does not fall behind the one shown before it started over.
+    fn may_show(&self) -> bool {
+        let paths = self.engine.film().totals.paths;
+        self.engine.has_picture() && (paths >= self.held_below || self.engine.is_finished())
+    }
+
+    /// Whether it should get its first picture before the next request has its turn.
+    fn is_owed_a_picture(&self) -> bool {
+        !self.failed && !self.engine.has_picture() && self.begun.elapsed() < PATIENCE
+    }
+}
+
+impl Worker {
+    /// Samples with the threads of `pool`.
+    pub(super) fn new(shared: Arc<Shared>, pool: Pool) -> Self {
+        Self {
+            shared,
+            pool,
+            epoch: 0,
+            paused: false,
+            shows_steps: false,
+            owes_steps: false,
+            job: None,
+            seconds_per_path: None,
+            snapshots: Vec::new(),
+            spare: Vec::new(),
+        }
+    }
+
+    /// Until the session ends.
+    pub(super) fn run(mut self) {
+        let mut idle = true;
+        while self.read_mail(idle) {
+            self.serve_snapshots();
+            self.serve_steps();
+            idle = self.work();
+        }
+    }
+
+    /// Takes the mail, waiting for some when `idle`. Returns false when the session ends.
+    fn read_mail(&mut self, idle: bool) -> bool {
+        let shared = Arc::clone(&self.shared);
+        let mut mail = lock(&shared.mail);
+        if idle {
+            let nothing_new = |_: &mut Mail| shared.epoch.load(Ordering::Relaxed) == self.epoch;
+            let waited = shared.bell.wait_while(mail, nothing_new);
+            mail = waited.unwrap_or_else(PoisonError::into_inner);
+        }
+        if shared.quit.load(Ordering::Relaxed) {
+            return false;
+        }
+        shared.improved.store(false, Ordering::Relaxed);
+        self.snapshots.append(&mut mail.snapshots);
+        self.paused = mail.paused;
+        self.owes_steps |= mail.shows_steps && !self.shows_steps;
+        self.shows_steps = mail.shows_steps;
+        if self.job.as_ref().is_some_and(Active::is_owed_a_picture) && mail.request.is_some() {
+            // The epoch stays the old one: the letter is still unread.
+            return true;
+        }
+        let (request, improvement) = (mail.request.take(), mail.improvement.take());
+        self.epoch = shared.epoch.load(Ordering::Relaxed);
+        drop(mail);
+        if let Some(request) = request {
+            self.begin(request);
+        }
+        if let Some(improvement) = improvement {
+            self.take_in(improvement);
+        }
+        self.start_over();
+        true
+    }
+
+    /// Notes what becomes of a provisional request, if it is the one being rendered.
+    fn take_in(&mut self, improvement: Improvement) {
+        let Improvement { generation, sampler } = improvement;
+        let Some(job) = self.job.as_mut().filter(|job| job.generation == generation) else {
+            return;
+        };
+        match sampler {
+            Some(sampler) => job.awaits = Awaits::Resumption(sampler),
+            None => {
+                job.awaits = Awaits::Nothing;
+                // A last picture may have been shown that did not know it.
+                job.shown_final = false;
+            }
+        }
+    }
+
+    /// Starts the render over with the better sampler that came for it, unless it is paused and has
+    /// something to show.
+    fn start_over(&mut self) {
+        let Some(job) = &mut self.job else { return };
+        if job.failed || self.paused && job.engine.has_picture() {
+            return;
+        }
+        let Awaits::Resumption(sampler) = &job.awaits else { return };
+        job.engine.start_over(sampler.clone());
+        job.awaits = Awaits::Nothing;
+        job.shown_final = false;
+        let shown = lock(&self.shared.latest);
+        let shown = shown.as_ref().filter(|picture| picture.generation == job.generation);
+        job.held_below = shown.map_or(0, |picture| picture.stats.paths);
+    }
+
+    fn begin(&mut self, request: Request) {
+        *lock(&self.shared.failure) = None;
+        let mut old_film = None;
+        if let Some(job) = self.job.take() {
+            let (film, cost) = job.engine.into_parts();
+            self.seconds_per_path = cost.or(self.seconds_per_path);
+            old_film = Some(film);
+        }
+        match film_for(request.resume, request.size, old_film) {
+            Ok(film) => {
+                let limits = Limits { spp: request.spp, seconds: None };
+                let engine = Engine::new(request.sampler, film, limits, self.seconds_per_path);
+                self.job = Some(Active::new(engine, request.generation, request.provisional));
+            }
+            Err(error) => {
+                let failure = Failure { at: None, message: error.to_string() };
+                self.fail(request.generation, failure);
+            }
+        }
+    }
+
+    fn fail(&self, generation: u64, failure: Failure) {
+        *lock(&self.shared.failure) = Some((generation, failure));
+        (self.shared.on_publish)();
+    }
+
+    fn serve_snapshots(&mut self) {
+        let Some(job) = &self.job else {
+            self.snapshots.clear();
+            return;
+        };
+        let stands = job.is_settled() || self.paused;
+        if !(job.may_show() && stands || job.failed) {
+            return;
+        }
+        for sender in self.snapshots.drain(..) {
+            if let Ok(film) = job.engine.film().try_clone() {
+                // Whoever asked may have gone.
+                let _ = sender.send(film);
+            }
+        }
+    }
+
+    /// Publishes what there is once more when steps were asked for; a request without a picture
+    /// brings them with its first.
+    fn serve_steps(&mut self) {
+        let owed = std::mem::take(&mut self.owes_steps);
+        if owed && self.job.as_ref().is_some_and(Active::may_show) {
+            self.publish();
+        }
+    }
+
+    /// One step of the render; returns whether there is nothing to do until the next letter.
+    fn work(&mut self) -> bool {
+        let Some(job) = &mut self.job else { return true };
+        if job.failed {
+            return true;
+        }
+        let (shared, epoch, begun) = (&self.shared, self.epoch, job.begun);
+        let has_picture = job.engine.has_picture();
+        let stop = || {
+            shared.epoch.load(Ordering::Relaxed) != epoch
+                && (has_picture
+                    || shared.quit.load(Ordering::Relaxed)
+                    || shared.improved.load(Ordering::Relaxed)
+                    || begun.elapsed() > PATIENCE)
+        };
+        let paused = self.paused && job.may_show();
+        let step = job.engine.step(&self.pool, paused, &stop);
+        let finished = job.engine.is_finished();
+        let due = job.may_show() && job.engine.publish_due() || finished && !job.shown_final;
+        if due && !matches!(step, Step::Interrupted) {
+            job.shown_final = finished;
+            self.publish();
+        }
+        match step {
+            Step::Worked | Step::Interrupted => false,
+            Step::Paused | Step::Done => true,
+            Step::Failed(failure) => {
+                if let Some(job) = &mut self.job {
+                    job.failed = true;
+                    let generation = job.generation;
+                    self.fail(generation, failure);
+                }
+                // Snapshots that waited for a picture get what there is.
+                self.snapshots.is_empty()
+            }
+        }
+    }
+
+    /// Makes a picture of the film and hands it over.
+    fn publish(&mut self) {
+        let (mut pixels, mut steps) = self.spare_memory();
+        let Some(job) = &mut self.job else { return };
+        if !self.shows_steps {
+            steps = StepMap::default();
+        }
+        let wanted = self.shows_steps.then_some(&mut steps);
+        let mut stats = job.engine.picture(&self.pool, &mut pixels, wanted);
+        stats.finished &= job.is_settled();
+        let picture = Arc::new(Picture {
+            generation: job.generation,
+            size: job.engine.film().size(),
+            pixels,
+            steps,
+            complete: job.engine.is_complete(),
+            stats,
+        });
+        self.spare.push(Arc::clone(&picture));
+        *lock(&self.shared.latest) = Some(picture);
+        (self.shared.on_publish)();
+    }
+
+    /// Memory for a picture: that of an old one if nobody holds it any more.
+    fn spare_memory(&mut self) -> (Vec<[f32; 4]>, StepMap) {
+        let free = self.spare.iter().position(|picture| Arc::strong_count(picture) == 1);
+        let free = free.map(|index| self.spare.swap_remove(index));
+        // Two are kept: the latest and the one the window may still be reading.
+        let excess = self.spare.len().saturating_sub(2);
+        self.spare.drain(..excess);
+        free.and_then(|picture| Arc::try_unwrap(picture).ok())
+            .map_or_else(Default::default, |picture| (picture.pixels, picture.steps))
+    }
+}
+
+/// The film to render on: the one to resume, the old one cleared, or a new one.
+fn film_for(resume: Option<Film>, size: UVec2, old: Option<Film>) -> Result<Film> {
+    match (resume, old) {
+        (Some(film), _) => same_size(film, size),
+        (None, Some(mut film)) if film.size() == size => {
+            film.clear();
+            Ok(film)
+        }
+        (None, old) => {
+            drop(old);
+            Film::new(size)
+        }
+    }
+}

@@ -1,0 +1,40 @@
+//! The probes as diagnostics show them: read only, and only the leaves, which are those that guide.
+
+use glam::Vec3A;
+
+use super::{Probe, Probes, child_of};
+use crate::math::Aabb;
+
+/// A probe in its place.
+#[derive(Clone, Copy, Debug)]
+pub struct ProbeView<'p> {
+    /// The cube it stands for, in the world.
+    pub bounds: Aabb,
+    probe: &'p Probe,
+}
+
+impl ProbeView<'_> {
+    /// Its score for a ray of the unit `direction`: the radiance that its matter is thought to
+    /// scatter back along the ray, μ_s ∫ L ρ dω, per length. 0 where none was found.
+    pub fn score(&self, direction: Vec3A) -> f32 {
+        // The power is μ_s times the radiance.
+        let mu_s = self.probe.power() / self.probe.radiance();
+        let score = mu_s * self.probe.in_scattered(direction);
+        if score.is_finite() { score } else { 0.0 }
+    }
+}
+
+impl Probes {
+    /// Calls `found` with every probe that guides.
+    pub fn for_each<'p>(&'p self, mut found: impl FnMut(ProbeView<'p>)) {
+        let mut left = vec![(0, self.octree.bounds())];
+        while let Some((node, bounds)) = left.pop() {
+            match self.octree.first_child(node) {
+                Some(first) => {
+                    left.extend((0..8).map(|i| (first + i, child_of(&bounds, i))));
+                }
+                None => found(ProbeView { bounds, probe: &self.probes[node as usize] }),
+            }
+        }
+    }
+}

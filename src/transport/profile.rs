@@ -1,0 +1,221 @@
+//! What lies along one ray and how the distance to a scattering event is drawn there, in numbers:
+//! for looking at, not for rendering. No chance is involved but a fixed one.
+
+use glam::UVec2;
+
+use super::{
+    distance::{self, Sharing},
+    probes::{Line, Probes},
+    scene::Scene,
+    tracking::{Gather, exp_neg},
+};
+use crate::{
+    light::Receiver,
+    math::{PathRng, Ray, Rgb, luminance, mean},
+    sampling::{equiangular::Equiangular, mis},
+    surface,
+    volume::{medium::Segment, world::MediumRay},
+};
+
+/// Places between two rows at which the medium is read.
+const STEPS: u32 = 4;
+/// Points of lights that p_select is averaged over.
+const LOOKS: u32 = 128;
+/// Where the medium goes on for ever, it is followed to this optical depth.
+const DEEPEST: f32 = 7.0;
+/// Fixed, with numbers that no picture is likely to use.
+const SEED: u64 = 0x7072_6f66_696c_652e;
+
+/// A table over the distance along a ray.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Profile {
+    /// From where the medium begins to where it ends, or to a surface, in even steps.
+    pub rows: Vec<Row>,
+    /// Optical depth of all of it, of the channels' mean transmittance.
+    pub optical_depth: f32,
+    /// Whether anything guides distances along the ray.
+    pub guided: bool,
+}
+
+/// What is at one distance.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Row {
+    /// The distance from the ray's origin.
+    pub t: f32,
+    /// Extinction μ_t, mean of the channels, 1/length.
+    pub mu_t: f32,
+    /// Transmittance T from the origin, mean of the channels.
+    pub transmittance: f32,
+    /// Luminance of the emission ε, radiance/length.
+    pub emission: f32,
+    /// Density with which null-collision tracking scatters here, μ_t T, 1/length: the mean over the
+    /// channels, which spectral MIS makes it. Where absorption gathers the emission, μ_s T instead.
+    pub p_null: f32,
+    /// Density with which the guides scatter here, 1/length: the mean of what the points of light
+    /// give that a path may choose.
+    pub p_select: f32,
+    /// MIS weight of what null-collision tracking brings from here.
+    pub weight_null: f32,
+    /// MIS weight of what the guides bring from here; both sum to 1 where anything scatters.
+    pub weight_guided: f32,
+}
+
+impl Profile {
+    /// Tabulates `count` rows, two at least, along a camera ray of a film of `size` pixels; `None`
+    /// where it meets no medium.
+    ///
+    /// T is integrated by the midpoint rule. The weights are those of the expected densities, as
+    /// they would be were the transmittance known; a path has those of its own null collisions,
+    /// which scatter around them.
+    pub fn along(
+        scene: &Scene,
+        probes: Option<&Probes>,
+        size: UVec2,
+        ray: &Ray,
+        count: u32,
+    ) -> Option<Self> {
+        let end = surface::intersect(&scene.surfaces, ray);
+        let medium = scene.world.along(*ray, end.map_or(f32::INFINITY, |end| end.hit.t));
+        let (t0, end) = medium.extent()?;
+        let t1 = if end.is_finite() { end } else { visible_end(medium.clone(), t0) };
+        if !(t0 < t1 && t1.is_finite()) {
+            return None;
+        }
+        let count = count.max(2);
+        let step = (t1 - t0) / (count - 1) as f32;
+        let mut rows: Vec<Row> = (0..count)
+            .map(|i| Row { t: (t0 + i as f32 * step).min(t1), ..Row::default() })
+            .collect();
+        let gather = Gather::of(&scene.strategy);
+        let optical_depth = read_medium(medium.clone(), gather, &mut rows, step);
+        let guided = probes.is_some_and(|probes| {
+            let line = probes.along(medium, ray);
+            let mean_light = probes.mean_light(scene, size);
+            let sharing = Sharing::new(&scene.strategy, line.as_ref(), mean_light);
+            let lights = match scene.strategy.advanced.equiangular {
+                true => points_of_light(scene, probes, ray, [t0, end]),
+                false => Vec::new(),
+            };
+            guide(line.as_ref(), &lights, &sharing, &mut rows)
+        });
+        Some(Self { rows, optical_depth, guided })
+    }
+}
+
+/// Where a medium without end has become dark.
+fn visible_end(mut medium: MediumRay, t0: f32) -> f32 {
+    let (mut depth, mut last) = (0.0, t0);
+    while let Some(segment) = medium.next_segment() {
+        if segment.t1.is_finite() {
+            depth += mean(medium.mu_t(0.5 * (segment.t0 + segment.t1))) * (segment.t1 - segment.t0);
+            last = segment.t1;
+        } else {
+            let left = (DEEPEST - depth).max(1.0);
+            return segment.t0 + left / mean(medium.mu_t(segment.t0));
+        }
+    }
+    last
+}
+
+/// Fills in what the medium decides; the optical depth of all of it.
+fn read_medium(mut medium: MediumRay, gather: Gather, rows: &mut [Row], step: f32) -> f32 {
+    let mut transmittance = Rgb::ONE;
+    let mut next = 0;
+    let last = rows.len() - 1;
+    while let Some(segment) = medium.next_segment() {
+        // Gaps are clear.
+        while next <= last && rows[next].t < segment.t0 {
+            rows[next].transmittance = mean(transmittance);
+            next += 1;
+        }
+        let mut t = segment.t0;
+        while next <= last && rows[next].t <= segment.t1 {
+            transmittance *= crossed(&medium, &segment, t, rows[next].t, step);
+            t = rows[next].t;
+            read_point(&medium, gather, transmittance, &mut rows[next]);
+            next += 1;
+        }
+        if next > last {
+            break;
+        }
+        transmittance *= crossed(&medium, &segment, t, segment.t1, step);
+    }
+    rows[next.min(last + 1)..].iter_mut().for_each(|row| row.transmittance = mean(transmittance));
+    -mean(transmittance).ln()
+}
+
+/// T of a part of a segment, per channel.
+fn crossed(medium: &MediumRay, segment: &Segment, t0: f32, t1: f32, step: f32) -> Rgb {
+    if segment.uniform {
+        return exp_neg(medium.mu_t(segment.t0), t1 - t0);
+    }
+    let parts = (STEPS as f32 * (t1 - t0) / step).ceil().clamp(1.0, STEPS as f32) as u32;
+    let length = (t1 - t0) / parts as f32;
+    let depth = |i| medium.mu_t(t0 + (i as f32 + 0.5) * length) * length;
+    (-(0..parts).map(depth).sum::<Rgb>()).exp()
+}
+
+fn read_point(medium: &MediumRay, gather: Gather, transmittance: Rgb, row: &mut Row) {
+    let c = medium.coefficients(row.t);
+    let scatters = if gather == Gather::Absorption { c.mu_s } else { c.mu_t };
+    // What extinguishes without scattering draws no distance that is used.
+    let scatters = if c.mu_s == Rgb::ZERO { Rgb::ZERO } else { scatters };
+    row.mu_t = mean(c.mu_t);
+    row.transmittance = mean(transmittance);
+    row.emission = luminance(c.emission);
+    row.p_null = mean(transmittance * scatters);
+    row.weight_null = if row.p_null > 0.0 { 1.0 } else { 0.0 };
+}
+
+/// Fills in what the guides decide; whether there are any.
+fn guide(
+    line: Option<&Line>,
+    lights: &[Option<Equiangular>],
+    sharing: &Sharing,
+    rows: &mut [Row],
+) -> bool {
+    if line.is_none() {
+        return false;
+    }
+    for row in rows {
+        let of_line = line.map(|line| line.pdf(row.t));
+        let sum = |pdfs: f32, light: &Option<Equiangular>| {
+            let light = light.as_ref().map(|light| light.pdf(row.t));
+            pdfs + distance::pdf_of_both(of_line, light)
+        };
+        row.p_select = match lights.len() {
+            0 => distance::pdf_of_both(of_line, None),
+            count => lights.iter().fold(0.0, sum) / count as f32,
+        };
+        (row.weight_null, row.weight_guided) = weights(row, sharing);
+    }
+    true
+}
+
+/// The densities by equal angles that a path may draw from.
+fn points_of_light(
+    scene: &Scene,
+    probes: &Probes,
+    ray: &Ray,
+    [t0, t1]: [f32; 2],
+) -> Vec<Option<Equiangular>> {
+    let from = Receiver { position: distance::middle(ray, t0, t1), normal: None };
+    let look = |sample| {
+        let mut rng = PathRng::new(SEED, UVec2::ZERO, sample);
+        let point = super::direct::point_of_light(scene, &from, &mut rng)?;
+        Equiangular::new(ray, point, probes.mean_cosine(), t0, t1)
+    };
+    (0..LOOKS).map(look).collect()
+}
+
+/// The MIS weights of both strategies.
+fn weights(row: &Row, sharing: &Sharing) -> (f32, f32) {
+    if row.p_null <= 0.0 {
+        return (0.0, 0.0);
+    }
+    if sharing.alone {
+        return (0.0, 1.0);
+    }
+    let null = mis::mixture([1.0, sharing.flights], [row.p_null, row.p_select]);
+    (null, 1.0 - null)
+}
