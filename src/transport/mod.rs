@@ -9,6 +9,7 @@ mod optimal;
 pub mod path;
 pub mod probes;
 pub mod scene;
+pub mod shadow;
 pub mod strategy;
 mod stratified;
 pub mod tracking;
