@@ -143,11 +143,11 @@ pub enum Distance {
 #[serde(rename_all = "snake_case")]
 pub enum TransmittanceEstimator {
     /// Unbiased ray marching: reads the smoke at evenly spread places.
+    #[default]
     Marching,
     /// Residual ratio tracking: reads at random what is denser than the thinnest smoke nearby.
     Residual,
     /// Ratio tracking: reads the smoke at random.
-    #[default]
     Ratio,
 }
 
@@ -211,13 +211,15 @@ impl Strategy {
         if self.probe_mis && self.advanced.distance != Distance::Null {
             return Some(
                 "decomposition scatters without reading the medium there, so that probes cannot \
-                 weigh its distances; turn probe_mis off or set distance = \"null\"",
+                 weigh its distances; turn the probes off (probe_mis = false) or choose distances by \
+                 chance alone (distance = \"null\")",
             );
         }
         if !self.emission_ratio_tracking {
             return Some(
                 "decomposition passes most of the medium unread, so that it cannot collect glow on \
-                 the way; turn emission_ratio_tracking on or set tracker = \"delta\"",
+                 the way; turn ratio tracking on (emission_ratio_tracking = true) or set tracker = \
+                 \"delta\"",
             );
         }
         None

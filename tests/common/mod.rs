@@ -15,7 +15,10 @@ use flambeau::{
     scene::{self, Overrides, VolumeCache},
     transport::{
         Frame, PathSample, PixelSampler, Scene,
-        strategy::{Advanced, BoostMode, Distance, LightSelection, NeeEvaluation, Strategy},
+        strategy::{
+            Advanced, BoostMode, Distance, LightSelection, NeeEvaluation, Strategy,
+            TransmittanceEstimator,
+        },
     },
 };
 use glam::UVec2;
@@ -95,8 +98,10 @@ pub fn boost_modes() -> [Strategy; 3] {
 }
 
 /// The finer keys in eight rows, an orthogonal array: every two keys meet in every pair of their
-/// values, and so do the last three, all three of them.
+/// values, and so do the last three, all three of them. The three estimators of transmittance meet
+/// most of them.
 pub fn finer() -> [Advanced; 8] {
+    use TransmittanceEstimator::{Marching, Ratio, Residual};
     let modes = [BoostMode::Stratified, BoostMode::Optimal, BoostMode::Clamped, BoostMode::Literal];
     std::array::from_fn(|row| {
         let [a, b, c] = [row & 1 != 0, row & 2 != 0, row & 4 != 0];
@@ -111,6 +116,7 @@ pub fn finer() -> [Advanced; 8] {
             },
             low_discrepancy: a ^ b ^ c,
             distance: if a ^ b { Distance::Probes } else { Distance::Mis },
+            transmittance: [Marching, Residual, Ratio, Marching][row / 2],
             equiangular: !c,
             guide_directions: !(a ^ c),
             guide_all_vertices: b ^ c,
@@ -170,8 +176,9 @@ pub fn full_name(strategy: &Strategy) -> String {
         strategy.advanced;
     let spread = if strategy.advanced.low_discrepancy { "even" } else { "random" };
     let on = |flag: bool, name: &'static str| if flag { name } else { "" };
-    let Advanced { distance, equiangular, guide_directions, guide_all_vertices, .. } =
-        strategy.advanced;
+    let Advanced {
+        transmittance, distance, equiangular, guide_directions, guide_all_vertices, ..
+    } = strategy.advanced;
     let guides = [
         on(equiangular, " angles"),
         on(guide_directions, " directions"),
@@ -179,7 +186,7 @@ pub fn full_name(strategy: &Strategy) -> String {
     ];
     format!(
         "{} {boost_mode:?} {boost_amount} {nee_evaluation:?} {light_selection:?} {spread} \
-         {distance:?}{}",
+         {distance:?} {transmittance:?}{}",
         name(strategy),
         guides.concat()
     )
