@@ -205,7 +205,8 @@ pub struct Flight {
     /// Emission gathered on the way, by the mode it was asked for.
     pub emission: Rgb,
     /// Where it scatters, the density with which the scattering walk would, given the tentative
-    /// collisions before and apart from their own density: Π P_n · μ̄ P_s, 1/length.
+    /// collisions before and apart from their own density: Π P_n · μ̄ P_s, 1/length. 0 from
+    /// decomposition tracking, which does not know it.
     pub pdf_null: f32,
     /// Tentative collisions on the way.
     pub collisions: u32,
