@@ -10,9 +10,8 @@ use flambeau::{
     math::{Aabb, PathRng, Ray},
     scene::{self, Overrides, VolumeCache},
     transport::{
-        Frame, PathSample, PixelSampler, Scene,
-        strategy::{Preset, Strategy},
-        tracking,
+        Frame, PathSample, PixelSampler, Scene, shadow,
+        strategy::{Preset, Strategy, TransmittanceEstimator},
     },
 };
 use glam::{UVec2, Vec3A};
@@ -59,7 +58,9 @@ fn tracked_collisions(bencher: Bencher) {
         let mut rng = PathRng::new(0, UVec2::ZERO, 0);
         rays.iter().fold(0u64, |sum, ray| {
             let medium = scene.world.along(*ray, f32::INFINITY);
-            sum + u64::from(tracking::transmittance(medium, &mut rng).1)
+            sum + u64::from(
+                shadow::transmittance(medium, TransmittanceEstimator::Ratio, &mut rng).1,
+            )
         })
     };
     bencher.counter(ItemsCount::new(walk())).bench(walk);

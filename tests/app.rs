@@ -14,7 +14,9 @@ use egui_kittest::wgpu::{WgpuTestRenderer, create_render_state, default_wgpu_set
 use egui_kittest::{Harness, SnapshotOptions};
 use flambeau::app::{App, Dialogs, Document, Level, Notice, Options, Scale, ramp_color};
 use flambeau::scene;
-use flambeau::transport::strategy::{Advanced, BoostMode, LightSelection, NeeEvaluation};
+use flambeau::transport::strategy::{
+    Advanced, BoostMode, LightSelection, NeeEvaluation, Tracker, TransmittanceEstimator,
+};
 
 /// A ball of glowing smoke on a small fixed film that ends after a few samples.
 const BALL: &str = r#"
@@ -231,6 +233,8 @@ fn every_finer_choice_can_be_made() {
     assert_eq!(advanced(&window).nee_evaluation, NeeEvaluation::Point);
     window.click(Role::Button, "Uniform");
     assert_eq!(advanced(&window).light_selection, LightSelection::Uniform);
+    window.click(Role::Button, "Residual");
+    assert_eq!(advanced(&window).transmittance, TransmittanceEstimator::Residual);
     window.click(Role::CheckBox, "Spread samples");
     assert!(!advanced(&window).low_discrepancy);
     assert_eq!(window.app().editor().undo_name(), Some("spread samples"));
@@ -239,6 +243,34 @@ fn every_finer_choice_can_be_made() {
     window.press(Modifiers::NONE, Key::Num4);
     let line = window.harness.get_by_role_and_label(Role::Button, "Line");
     assert!(line.accesskit_node().is_disabled());
+}
+
+#[test]
+fn a_tracker_is_offered_where_it_may_be_used_and_gives_way() {
+    let Some(mut window) = Window::open(BALL) else { return };
+    let tracker = |window: &Window| window.document().settings.strategy.advanced.tracker;
+    window.click(Role::DisclosureTriangle, "Advanced");
+    let offered = |window: &Window| {
+        let button = window.harness.get_by_role_and_label(Role::Button, "Decomposition");
+        !button.accesskit_node().is_disabled()
+    };
+    assert!(!offered(&window));
+    assert!(window.has("probes cannot weigh its distances"));
+    window.click(Role::Button, "Spectral");
+    assert_eq!(tracker(&window), Tracker::Spectral);
+
+    window.press(Modifiers::NONE, Key::Num5);
+    assert!(offered(&window) && !window.has("Not beside the present settings"));
+    window.click(Role::Button, "Decomposition");
+    assert_eq!(tracker(&window), Tracker::Decomposition);
+    window.press(Modifiers::NONE, Key::Num2);
+    assert_eq!(tracker(&window), Tracker::Delta, "ratio tracking went off");
+    assert!(window.has("cannot collect glow on the way"));
+    window.press(Modifiers::COMMAND, Key::Z);
+    assert_eq!(tracker(&window), Tracker::Decomposition);
+    window.click(Role::Button, "Full");
+    assert_eq!(tracker(&window), Tracker::Delta, "the probes went on");
+    assert!(!window.has("strategy.advanced.tracker:"), "no error is shown");
 }
 
 #[test]

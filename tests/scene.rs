@@ -236,6 +236,14 @@ const MALFORMED: &[(&str, &[&str])] = &[
         "[strategy.advanced]\nlight_selection = 'probes'",
         &["strategy.advanced.light_selection:", "not there yet", "\"hierarchy\""],
     ),
+    (
+        "[strategy.advanced]\ntracker = 'decomposition'",
+        &["strategy.advanced.tracker:", "(probe_mis = false)", "(distance = \"null\")"],
+    ),
+    (
+        "[strategy]\npreset = 'baseline'\n[strategy.advanced]\ntracker = 'decomposition'",
+        &["strategy.advanced.tracker:", "(emission_ratio_tracking = true)", "tracker = \"delta\""],
+    ),
     ("[strategy.advanced]\nboost_amount = -1", &["strategy.advanced.boost_amount:", "0..1000"]),
 ];
 
@@ -273,6 +281,22 @@ fn the_command_line_goes_over_the_preset_over_the_file_over_the_defaults() {
     assert_eq!((both.film.spp, both.film.seed), (9, 0));
     let last = with(None, &["strategy.majorant_boost=false", "strategy.preset=full"]).strategy;
     assert!(last.majorant_boost, "the later of two --set wins");
+}
+
+#[test]
+fn trackers_are_accepted_where_their_walks_know_enough() {
+    for text in [
+        "[strategy]\npreset = 'emission'\nadvanced.tracker = 'decomposition'",
+        "[strategy.advanced]\ntracker = 'decomposition'\ndistance = 'null'",
+        "[strategy.advanced]\ntracker = 'spectral'",
+        "[strategy]\npreset = 'baseline'\nadvanced.tracker = 'spectral'",
+    ] {
+        parse(text).unwrap();
+    }
+    let full = Overrides { preset: Some(Preset::Full), set: Vec::new() };
+    let file = "[strategy]\npreset = 'emission'\nadvanced.tracker = 'decomposition'";
+    let refused = scene::parse(file, "torch.toml", Path::new("/scenes"), &full).unwrap_err();
+    assert!(refused.to_string().contains("strategy.advanced.tracker"), "{refused}");
 }
 
 #[test]

@@ -1,7 +1,8 @@
 //! What each strategy brings: variance at equal samples and at equal time, scene by scene.
 //!
 //! `cargo bench --bench noise -- [SCENE ...] [--quick]` prints a table per scene with one row per
-//! strategy; `-- modes` the modes of the majorant boost by their amounts; `-- --list` the scenes.
+//! strategy; `-- modes` the modes of the majorant boost by their amounts; `-- walks` the estimators
+//! of transmittance and the trackers; `-- --list` the scenes.
 //! All of it takes an hour of CPU time, `--quick` some minutes.
 
 mod measure;
@@ -17,11 +18,14 @@ use scenes::BenchScene;
 
 /// The word that asks for the table of boost modes.
 const MODES: &str = "modes";
+/// The word that asks for the table of transmittance estimators and trackers.
+const WALKS: &str = "walks";
 
 #[derive(Parser)]
 #[command(name = "noise", about = "Variance and cost of each strategy, scene by scene")]
 struct Arguments {
-    /// Only scenes whose name contains one of these; `modes` for the modes of the majorant boost.
+    /// Only scenes whose name contains one of these; `modes` for the modes of the majorant boost,
+    /// `walks` for estimators of transmittance and trackers.
     filters: Vec<String>,
     /// Fewer samples and seeds: figures good to 10 to 20 %.
     #[arg(long)]
@@ -61,12 +65,21 @@ impl Arguments {
     /// The scenes and rows that are asked for.
     fn selection(&self) -> Vec<(BenchScene, Vec<Row>)> {
         let modes = self.filters.iter().any(|filter| filter == MODES);
-        let filters: Vec<&String> = self.filters.iter().filter(|f| *f != MODES).collect();
+        let walks = self.filters.iter().any(|filter| filter == WALKS);
+        let words = [MODES, WALKS];
+        let filters: Vec<&String> =
+            self.filters.iter().filter(|f| !words.contains(&f.as_str())).collect();
         let chosen = |scene: &BenchScene| {
-            let all = filters.is_empty() && (scene.compares_modes || !modes);
+            let all = filters.is_empty()
+                && (scene.compares_modes || !modes)
+                && (scene.has_lamps || !walks);
             all || filters.iter().any(|filter| scene.name.contains(filter.as_str()))
         };
-        let rows = |scene: &BenchScene| if modes { rows::modes() } else { rows::toggles(scene) };
+        let rows = |scene: &BenchScene| match () {
+            () if modes => rows::modes(),
+            () if walks => rows::walks(),
+            () => rows::toggles(scene),
+        };
         scenes::all().into_iter().filter(chosen).map(|s| (s, rows(&s))).collect()
     }
 }

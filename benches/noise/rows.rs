@@ -1,7 +1,8 @@
 //! The strategies that are compared.
 
 use flambeau::transport::strategy::{
-    Advanced, BoostMode, LightSelection, NeeEvaluation, Preset, Strategy,
+    Advanced, BoostMode, LightSelection, NeeEvaluation, Preset, Strategy, Tracker,
+    TransmittanceEstimator,
 };
 
 use super::scenes::BenchScene;
@@ -70,6 +71,31 @@ pub fn modes() -> Vec<Row> {
             row(&format!("{name} {boost_amount}"), Strategy { advanced, ..full })
         }));
     }
+    rows
+}
+
+/// The estimators of transmittance, then the trackers. Without the probes, whose noise is another
+/// matter and which not every tracker knows.
+pub fn walks() -> Vec<Row> {
+    let plain = Preset::Emission.strategy();
+    let estimators = [
+        (TransmittanceEstimator::Ratio, "transmittance ratio"),
+        (TransmittanceEstimator::Residual, "transmittance residual"),
+        (TransmittanceEstimator::Marching, "transmittance marching"),
+    ];
+    let trackers = [
+        (Tracker::Delta, "tracker delta"),
+        (Tracker::Decomposition, "tracker decomposition"),
+        (Tracker::Spectral, "tracker spectral"),
+    ];
+    let mut rows = Vec::from(estimators.map(|(transmittance, name)| {
+        let advanced = Advanced { transmittance, ..plain.advanced };
+        row(name, Strategy { advanced, ..plain })
+    }));
+    rows.extend(trackers.map(|(tracker, name)| {
+        let advanced = Advanced { tracker, ..plain.advanced };
+        row(name, Strategy { advanced, ..plain })
+    }));
     rows
 }
 

@@ -19,6 +19,8 @@ pub struct BenchScene {
     pub compares_modes: bool,
     /// Whether choosing among lights matters in it.
     pub many_lights: bool,
+    /// Whether it is one of those that estimators and trackers are compared on.
+    pub has_lamps: bool,
     file: &'static str,
     folder: Folder,
     set: &'static [&'static str],
@@ -44,8 +46,11 @@ pub fn all() -> Vec<BenchScene> {
         folder: Folder::Own,
         compares_modes: false,
         many_lights: false,
+        has_lamps: false,
         set: &[],
     };
+    let lamps =
+        |name, shows, set| BenchScene { has_lamps: true, set, ..own(name, shows, "lamps.toml") };
     let peers = |name, shows, file| BenchScene { folder: Folder::Peers, ..own(name, shows, file) };
     vec![
         BenchScene {
@@ -77,6 +82,13 @@ pub fn all() -> Vec<BenchScene> {
         },
         own("no_soot", "fire without extinction, on a floor", "no_soot.toml"),
         own("chromatic_smoke", "smoke that colors what shines through", "chromatic_smoke.toml"),
+        lamps("lamps_thin", "lamps around thin smoke", &["volume.0.density.scale=1.0"]),
+        lamps("lamps_thick", "lamps around thick smoke", &["volume.0.density.scale=20.0"]),
+        lamps(
+            "lamps_colored",
+            "lamps around colored smoke",
+            &["volume.0.density.scale=[3.0, 6.0, 9.0]"],
+        ),
     ]
 }
 

@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use super::history::{Gesture, History};
 use crate::image::tone::Tone;
 use crate::scene::Settings;
+use crate::transport::strategy::Tracker;
 
 /// Everything that an edit changes and undo brings back.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -73,10 +74,15 @@ impl Editor {
         self.name = Some(name.into());
     }
 
-    /// Ends a frame: records what changed. Whether anything did.
+    /// Ends a frame: records what changed. Whether anything did. A tracker that the edit leaves
+    /// without what it needs gives way to the plain one.
     pub fn end_frame(&mut self) -> bool {
         if self.document == self.before {
             return false;
+        }
+        let strategy = &mut self.document.settings.strategy;
+        if strategy.tracker_refusal().is_some() {
+            strategy.advanced.tracker = Tracker::default();
         }
         let name = self.name.take().unwrap_or_else(|| "edit".to_owned());
         self.history.record(self.before.clone(), &name, Gesture(self.gesture));

@@ -183,12 +183,23 @@ pub fn vector(ui: &mut Ui, name: &str, key: &str, value: &mut [f32; 3], speed: f
 
 /// A row of buttons of which at most one is on; the index of the one that was clicked.
 pub fn segments(ui: &mut Ui, choices: &[(&str, &str)], chosen: Option<usize>) -> Option<usize> {
+    segments_but(ui, choices, chosen, None)
+}
+
+/// [`segments`] of which one may not be clicked.
+fn segments_but(
+    ui: &mut Ui,
+    choices: &[(&str, &str)],
+    chosen: Option<usize>,
+    refused: Option<usize>,
+) -> Option<usize> {
     let mut clicked = None;
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
         for (index, (text, help)) in choices.iter().enumerate() {
             let button = Button::selectable(chosen == Some(index), *text).frame_when_inactive(true);
-            if ui.add(button).on_hover_text(*help).clicked() {
+            let button = ui.add_enabled(refused != Some(index), button);
+            if button.on_hover_text(*help).on_disabled_hover_text(*help).clicked() {
                 clicked = Some(index);
             }
         }
@@ -202,9 +213,20 @@ pub fn choice<T>(ui: &mut Ui, name: &str, key: &str, value: &mut T) -> bool
 where
     T: serde::Serialize + serde::de::DeserializeOwned,
 {
+    choice_but(ui, name, key, value, None)
+}
+
+/// [`choice`] without what may not be chosen beside the other settings, if there is such a name.
+pub fn choice_but<T>(ui: &mut Ui, name: &str, key: &str, value: &mut T, refused: Option<T>) -> bool
+where
+    T: serde::Serialize + serde::de::DeserializeOwned,
+{
     let explained = keys::explained_choices(key);
-    let present = serde_json::to_value(&*value).ok();
-    let chosen = explained.iter().position(|(name, _)| present == Some((*name).into()));
+    let index_of = |value: &T| {
+        let value = serde_json::to_value(value).ok();
+        explained.iter().position(|(name, _)| value == Some((*name).into()))
+    };
+    let (chosen, refused) = (index_of(value), refused.as_ref().and_then(index_of));
     let names: Vec<String> = explained.iter().map(|(name, _)| capitalized(name)).collect();
     let choices: Vec<(&str, &str)> = std::iter::zip(&names, &explained)
         .map(|(name, (_, help))| (name.as_str(), *help))
@@ -212,9 +234,9 @@ where
     let help = key_help(key);
     let clicked = if choices.len() > MOST_IN_A_ROW {
         row_label(ui, name, &help);
-        ui.name_inputs(name, |ui| segments(ui, &choices, chosen))
+        ui.name_inputs(name, |ui| segments_but(ui, &choices, chosen, refused))
     } else {
-        row(ui, name, &help, |ui| segments(ui, &choices, chosen)).inner
+        row(ui, name, &help, |ui| segments_but(ui, &choices, chosen, refused)).inner
     };
     let parsed = clicked
         .and_then(|index| explained.get(index))

@@ -26,6 +26,9 @@ pub(super) fn check(settings: &Settings, source: &str) -> Result<()> {
     for (index, one) in settings.surface.iter().enumerate() {
         surface(one).map_err(items("surface", index)).map_err(fail)?;
     }
+    if let Some(reason) = settings.strategy.tracker_refusal() {
+        return Err(fail(("strategy.advanced.tracker".to_owned(), reason.to_owned())));
+    }
     Ok(())
 }
 

@@ -11,8 +11,8 @@ use glam::Vec3A;
 use super::{
     emission::{Errand, Gatherer},
     scene::Scene,
+    shadow,
     strategy::{LightSelection, NeeEvaluation, Strategy},
-    tracking,
     vertex::Vertex,
 };
 use crate::{
@@ -186,7 +186,7 @@ pub fn glance(
     (pdf > 0.0).then(|| (aim.direction, aim.radiance_over_pdf(scene, gatherer, from, pdf, rng).0))
 }
 
-/// What a light with a place of its own sends along `ray`; transmittance is ratio tracked.
+/// What a light with a place of its own sends along `ray`.
 fn radiance_of_solid(
     scene: &Scene,
     ray: &Ray,
@@ -197,7 +197,8 @@ fn radiance_of_solid(
         return (Rgb::ZERO, 0);
     }
     let medium = scene.world.along(*ray, light.distance);
-    let (transmittance, collisions) = tracking::transmittance(medium, rng);
+    let estimator = scene.strategy.advanced.transmittance;
+    let (transmittance, collisions) = shadow::transmittance(medium, estimator, rng);
     (light.radiance * transmittance, collisions)
 }
 
@@ -235,7 +236,8 @@ fn emission_at_point(
         return (Rgb::ZERO, 0);
     }
     let medium = scene.world.along(*ray, distance);
-    let (transmittance, collisions) = tracking::transmittance(medium, rng);
+    let estimator = scene.strategy.advanced.transmittance;
+    let (transmittance, collisions) = shadow::transmittance(medium, estimator, rng);
     (emission * transmittance / (pdf_volume * distance * distance), collisions)
 }
 

@@ -13,7 +13,7 @@ use glam::Vec3A;
 
 use super::{
     probes::Line,
-    strategy::{Distance, ScatterProbability, Strategy},
+    strategy::{Distance, ScatterProbability, Strategy, Tracker},
     tracking::{self, Event, Flight},
 };
 use crate::{
@@ -113,13 +113,29 @@ impl Sharing {
     }
 }
 
-/// The flight along a ray through `medium`, without a guide.
-pub(super) fn null(
+/// The flight along a ray through `medium` without a guide, by the tracker that is chosen.
+pub(super) fn unguided(
     medium: MediumRay,
     strategy: &Strategy,
     throughput: Rgb,
     rng: &mut PathRng,
 ) -> Flight {
+    // Without a walk of its own, the emission is gathered by the collisions that are read.
+    if strategy.advanced.tracker == Tracker::Decomposition && strategy.emission_ratio_tracking {
+        let optical_distance = rng.exponential_at(Slot::Distance);
+        return tracking::scatter_by_decomposition(
+            medium,
+            strategy,
+            throughput,
+            optical_distance,
+            rng,
+        );
+    }
+    null(medium, strategy, throughput, rng)
+}
+
+/// The flight along a ray through `medium` by null-collision tracking that knows its density.
+fn null(medium: MediumRay, strategy: &Strategy, throughput: Rgb, rng: &mut PathRng) -> Flight {
     let optical_distance = rng.exponential_at(Slot::Distance);
     tracking::scatter(medium, strategy, throughput, optical_distance, rng)
 }

@@ -131,7 +131,7 @@ pub(super) fn by_rate(
         emission: Rgb,
     }
     impl<F: FnMut(&Segment, Rgb) -> f32> Walk for EmissionRatio<F> {
-        fn rate(&mut self, segment: &Segment) -> f32 {
+        fn rate(&mut self, _: &MediumRay, segment: &Segment) -> f32 {
             (self.rate)(segment, self.weight)
         }
         fn cross(&mut self, medium: &MediumRay, segment: &Segment, _: &mut PathRng) -> bool {

@@ -10,6 +10,7 @@ pub mod path;
 pub mod probes;
 pub mod profile;
 pub mod scene;
+pub mod shadow;
 pub mod strategy;
 mod stratified;
 pub mod tracking;

@@ -204,7 +204,7 @@ impl Path<'_> {
         let is_first = self.scatters == 0;
         let guide = if is_first || !needs_end { self.guide(&medium, rng) } else { None };
         let flight = match guide {
-            None => distance::null(medium, strategy, self.throughput, rng),
+            None => distance::unguided(medium, strategy, self.throughput, rng),
             Some(guide) if is_first => self.fan_out(medium, &guide, rng, observer),
             Some(guide) => distance::null_or_guided(medium, strategy, &guide, self.throughput, rng),
         };

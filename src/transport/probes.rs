@@ -102,6 +102,7 @@ impl Probes {
                 boost_clamp_voxels: aside.boost_clamp_voxels,
                 distance: aside.distance,
                 scatter_probability: aside.scatter_probability,
+                tracker: aside.tracker,
                 guide_all_vertices: aside.guide_all_vertices,
                 equiangular: aside.equiangular,
                 guide_directions: aside.guide_directions,

@@ -66,6 +66,15 @@ pub struct Advanced {
     /// more often into which more light is scattered: much less noise around lamps and fires, for
     /// more time there. `even` gives all rays about the same.
     pub scatter_probability: ScatterProbability,
+    /// How much light gets through to where a bounce looks at a lamp. `marching` reads the smoke at
+    /// evenly spread places; `residual` reads it at random where it is denser than it is at least
+    /// nearby; `ratio` reads it at random. All three are right on average.
+    pub transmittance: TransmittanceEstimator,
+    /// How the distances of chance are found. `delta` reads the smoke at each step; `decomposition`
+    /// does without where the smoke is at least as dense for certain, but needs glow to have its own
+    /// walk (ratio tracking) and knows no probes; `spectral` chooses the steps in colored smoke
+    /// whatever the color of the path, with more noise. The last two are there for comparison.
+    pub tracker: Tracker,
     /// How many probes there are, about. More of them know the light better, and take longer to
     /// place.
     #[schemars(range(min = 64, max = 1_000_000))]
@@ -144,6 +153,32 @@ pub enum ScatterProbability {
     Even,
 }
 
+/// How shadow rays estimate transmittance.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum TransmittanceEstimator {
+    /// Unbiased ray marching: reads the smoke at evenly spread places.
+    #[default]
+    Marching,
+    /// Residual ratio tracking: reads at random what is denser than the thinnest smoke nearby.
+    Residual,
+    /// Ratio tracking: reads the smoke at random.
+    Ratio,
+}
+
+/// How the scattering walk draws distances by chance.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Tracker {
+    /// Reads the smoke at each step and heeds the color of the path.
+    #[default]
+    Delta,
+    /// Does not read it where it is at least as dense for certain.
+    Decomposition,
+    /// Reads it at each step, whatever the color of the path.
+    Spectral,
+}
+
 /// A named set of toggles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -159,13 +194,7 @@ pub enum Preset {
 
 /// Keys of `[strategy]` that the scene format knows but whose strategy is not there yet. They are
 /// refused with a message that says so, which is another message than for a misspelled key.
-pub const PLANNED_KEYS: &[&str] = &[
-    "integrator",
-    "advanced.probe_learning",
-    "advanced.transmittance",
-    "advanced.tracker",
-    "advanced.integrator",
-];
+pub const PLANNED_KEYS: &[&str] = &["integrator", "advanced.probe_learning", "advanced.integrator"];
 
 /// Values of `advanced.light_selection` that the scene format knows but that are not there yet.
 pub const PLANNED_LIGHT_SELECTIONS: &[&str] = &["probes"];
@@ -177,6 +206,33 @@ impl Strategy {
         [Preset::Full, Preset::Emission, Preset::Baseline]
             .into_iter()
             .find(|preset| Self { advanced: self.advanced, ..preset.strategy() } == *self)
+    }
+
+    /// Why the tracker is refused beside the rest, and how to mend that; `None` where it is not.
+    pub fn tracker_refusal(&self) -> Option<&'static str> {
+        self.refusal_of(self.advanced.tracker)
+    }
+
+    /// [`Strategy::tracker_refusal`] if `tracker` were chosen.
+    pub fn refusal_of(&self, tracker: Tracker) -> Option<&'static str> {
+        if tracker != Tracker::Decomposition {
+            return None;
+        }
+        if self.probe_mis && self.advanced.distance != Distance::Null {
+            return Some(
+                "decomposition scatters without reading the medium there, so that probes cannot \
+                 weigh its distances; turn the probes off (probe_mis = false) or choose distances by \
+                 chance alone (distance = \"null\")",
+            );
+        }
+        if !self.emission_ratio_tracking {
+            return Some(
+                "decomposition passes most of the medium unread, so that it cannot collect glow on \
+                 the way; turn ratio tracking on (emission_ratio_tracking = true) or set tracker = \
+                 \"delta\"",
+            );
+        }
+        None
     }
 }
 
@@ -196,6 +252,8 @@ impl Default for Advanced {
             light_selection: LightSelection::default(),
             distance: Distance::default(),
             scatter_probability: ScatterProbability::default(),
+            transmittance: TransmittanceEstimator::default(),
+            tracker: Tracker::default(),
             probe_count: 4096,
             guide_all_vertices: false,
             equiangular: true,

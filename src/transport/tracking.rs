@@ -1,15 +1,20 @@
-//! Null-collision tracking: the one loop that walks tentative collisions, and the three walks that
-//! use it.
+//! Null-collision tracking: the one loop that walks tentative collisions, and the scattering walk,
+//! which uses it.
 //!
 //! A heterogeneous medium is filled up with fictitious matter μ_n = μ̄ − μ_t to a piecewise constant
 //! majorant μ̄, in which distances to collisions are exponential. With T̄ the transmittance of μ̄,
 //! L = ∫ T̄ [ε + μ_s L_s + μ_n L] dt + T̄(d) L_end (Miller et al. 2019, eq. 10, with emission), and
-//! each walk below is a Monte Carlo reading of it. All are unbiased: the majorants hold
+//! each walk is a Monte Carlo reading of it. All are unbiased: the majorants hold
 //! everywhere, and roulette compensates for what it ends.
+
+mod decomposition;
 
 use std::ops::ControlFlow;
 
-use super::{emission::EmissionMajorant, strategy::Strategy};
+use super::{
+    emission::EmissionMajorant,
+    strategy::{Strategy, Tracker},
+};
 use crate::{
     math::{PathRng, Rgb, mean},
     volume::{
@@ -32,7 +37,7 @@ pub(super) const ROULETTE_BELOW: f32 = 0.05;
 pub(super) trait Walk {
     /// The rate of tentative collisions μ̄ in a segment, at least its majorant. Asked for once in
     /// each, from near to far; the walk's history may have a say in it.
-    fn rate(&mut self, segment: &Segment) -> f32;
+    fn rate(&mut self, medium: &MediumRay, segment: &Segment) -> f32;
 
     /// Crosses a uniform segment in closed form; false to be given its collisions instead.
     fn cross(&mut self, medium: &MediumRay, segment: &Segment, rng: &mut PathRng) -> bool;
@@ -80,7 +85,7 @@ pub(super) fn track(
         if segment.uniform && walk.cross(&medium, &segment, rng) {
             continue;
         }
-        let rate = walk.rate(&segment);
+        let rate = walk.rate(&medium, &segment);
         if rate <= 0.0 {
             continue;
         }
@@ -142,37 +147,6 @@ pub(super) fn exp_neg(mu_t: Rgb, length: f32) -> Rgb {
     Rgb::select(clear, Rgb::ONE, (-mu_t * length).exp())
 }
 
-/// Ratio tracking (Novák et al. 2014, eq. 12): an estimate of the transmittance along the medium,
-/// the product of μ_n/μ̄ over all tentative collisions; closed form in uniform segments.
-/// Also returns the number of collisions.
-pub fn transmittance(medium: MediumRay, rng: &mut PathRng) -> (Rgb, u32) {
-    struct Ratio {
-        weight: Rgb,
-    }
-    impl Walk for Ratio {
-        fn rate(&mut self, segment: &Segment) -> f32 {
-            segment.majorant
-        }
-        fn cross(&mut self, medium: &MediumRay, segment: &Segment, _: &mut PathRng) -> bool {
-            let mu_t = medium.coefficients(segment.t0).mu_t;
-            self.weight *= exp_neg(mu_t, segment.t1 - segment.t0);
-            true
-        }
-        fn collide(
-            &mut self,
-            medium: &MediumRay,
-            at: &Collision,
-            rng: &mut PathRng,
-        ) -> ControlFlow<()> {
-            self.weight *= null_coefficient(at.rate, medium.mu_t(at.t)) / at.rate;
-            roulette(&mut self.weight, rng)
-        }
-    }
-    let mut walk = Ratio { weight: Rgb::ONE };
-    let collisions = track(medium, rng.exponential(), rng, &mut walk);
-    (walk.weight, collisions)
-}
-
 /// Where the scattering walk gathers emission.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Gather {
@@ -196,6 +170,8 @@ impl Gather {
         }
     }
 }
+
+pub use decomposition::scatter as scatter_by_decomposition;
 
 /// How a flight through the medium ended.
 #[derive(Clone, Debug)]
@@ -229,7 +205,8 @@ pub struct Flight {
     /// Emission gathered on the way, by the mode it was asked for.
     pub emission: Rgb,
     /// Where it scatters, the density with which the scattering walk would, given the tentative
-    /// collisions before and apart from their own density: Π P_n · μ̄ P_s, 1/length.
+    /// collisions before and apart from their own density: Π P_n · μ̄ P_s, 1/length. 0 from
+    /// decomposition tracking, which does not know it.
     pub pdf_null: f32,
     /// Tentative collisions on the way.
     pub collisions: u32,
@@ -245,6 +222,10 @@ pub struct Flight {
 /// is also how likely that channel's own analog walk is to take it, the probabilities make the
 /// path's density the mean of f over the channels, and its weight f_c / mean f (Miller et al.
 /// 2019).
+///
+/// With the tracker `spectral` it is P ∝ the largest channel of μ instead, whatever the path has
+/// come through (the same paper's section 5.1, maximum probabilities): spectral tracking, whose
+/// weights grow with every collision that the channels disagree at. Gray media take it for `delta`.
 pub fn scatter(
     medium: MediumRay,
     strategy: &Strategy,
@@ -281,6 +262,8 @@ struct Scattering {
     gather: Gather,
     /// The path's throughput before the flight; only its color matters here.
     throughput: Rgb,
+    /// Whether events are chosen whatever the color of the path.
+    spectral: bool,
     weight: Rgb,
     emission: Rgb,
     event: Event,
@@ -302,7 +285,7 @@ struct Shares {
 }
 
 impl Walk for Scattering {
-    fn rate(&mut self, segment: &Segment) -> f32 {
+    fn rate(&mut self, _: &MediumRay, segment: &Segment) -> f32 {
         let rate = match self.gather {
             Gather::Nothing => segment.majorant,
             Gather::EveryCollision => self.majorant.rate(segment),
@@ -402,7 +385,7 @@ impl Walk for Scattering {
         if self.gather == Gather::Absorption {
             self.emission += self.weight * c.emission / rate * (total / absorb);
         }
-        let real = u - null - scatter < mean(self.throughput * self.weight * c.mu_a());
+        let real = u - null - scatter < self.share(c.mu_a());
         self.event = Event::Absorbed { t, real };
         ControlFlow::Break(())
     }
@@ -414,6 +397,7 @@ impl Scattering {
             majorant: EmissionMajorant::of(strategy),
             gather: Gather::of(strategy),
             throughput,
+            spectral: strategy.advanced.tracker == Tracker::Spectral,
             weight: Rgb::ONE,
             emission: Rgb::ZERO,
             event: Event::Reached,
@@ -526,6 +510,12 @@ impl Scattering {
         true
     }
 
+    /// What a coefficient's event is chosen in proportion to.
+    #[inline]
+    fn share(&self, mu: Rgb) -> f32 {
+        if self.spectral { mu.max_element() } else { mean(self.throughput * self.weight * mu) }
+    }
+
     /// In which proportion a collision is an absorption, a scattering event or null.
     ///
     /// Where emission is not gathered by absorption, a real collision always scatters, and the
@@ -542,8 +532,7 @@ impl Scattering {
         } else {
             [c.mu_a(), c.mu_s]
         };
-        let color = self.throughput * self.weight;
-        let [absorb, scatter, null] = [absorb, scatter, mu_n].map(|mu| mean(color * mu));
+        let [absorb, scatter, null] = [absorb, scatter, mu_n].map(|mu| self.share(mu));
         Shares { absorb, scatter, null, total: absorb + scatter + null }
     }
 }
@@ -581,7 +570,7 @@ mod tests {
         fn until(&self) -> f32 {
             self.until
         }
-        fn rate(&mut self, segment: &Segment) -> f32 {
+        fn rate(&mut self, _: &MediumRay, segment: &Segment) -> f32 {
             segment.majorant
         }
         fn cross(&mut self, _: &MediumRay, _: &Segment, _: &mut PathRng) -> bool {

@@ -77,7 +77,7 @@ impl Substance {
     pub fn at(&self, local: Vec3A) -> Coefficients {
         let density = self.density.at(local).max(0.0);
         let mu_t = self.density_scale * density;
-        let mu_s = self.albedo.at(local).clamp(Rgb::ZERO, Rgb::ONE) * mu_t;
+        let mu_s = self.albedo(local) * mu_t;
         let emission = self.emission.at(local, mu_t - mu_s, density);
         Coefficients { mu_t, mu_s, emission }
     }
@@ -105,7 +105,7 @@ impl Substance {
     #[inline]
     pub fn extinction(&self, local: Vec3A) -> (Rgb, Rgb) {
         let mu_t = self.mu_t(local);
-        (mu_t, self.albedo.at(local).clamp(Rgb::ZERO, Rgb::ONE) * mu_t)
+        (mu_t, self.albedo(local) * mu_t)
     }
 
     /// ε alone at a point of the volume's space.
@@ -118,11 +118,26 @@ impl Substance {
         }
     }
 
-    fn majorant_over(&self, local: &Aabb) -> Majorant {
-        let density = self.density.range(local).1.max(0.0);
+    /// The majorant over a box, and the minorant of the extinction's largest channel.
+    fn bounds_over(&self, local: &Aabb) -> (Majorant, f32) {
+        let (least, most) = self.density.range(local);
+        let [least, density] = [least, most].map(|density| density.max(0.0));
         let mu_t = self.density_scale * density;
         let emission = self.emission.upper_bound(local, mu_t, density);
-        Majorant { mu_t: mu_t.max_element(), emission }
+        let largest = self.density_scale.max_element();
+        (Majorant { mu_t: mu_t.max_element(), emission }, largest * least)
+    }
+
+    /// μ_t relative to its largest channel.
+    pub fn tint(&self) -> Rgb {
+        let largest = self.density_scale.max_element();
+        if largest > 0.0 { self.density_scale / largest } else { Rgb::ZERO }
+    }
+
+    /// The albedo alone at a point of the volume's space.
+    #[inline]
+    pub fn albedo(&self, local: Vec3A) -> Rgb {
+        self.albedo.at(local).clamp(Rgb::ZERO, Rgb::ONE)
     }
 }
 
@@ -172,7 +187,7 @@ impl Volume {
         cell_size: Vec3A,
         voxel: Option<f32>,
     ) -> Self {
-        let cells = MajorantGrid::build(bounds, cell_size, |cell| substance.majorant_over(cell));
+        let cells = MajorantGrid::build(bounds, cell_size, |cell| substance.bounds_over(cell));
         let chords = probe_chords(&cells, &substance);
         let energy = Energy::varying(&cells, |local| luminance(substance.at(local).emission));
         let region = Region::Box(bounds);

@@ -104,6 +104,7 @@ impl CellGrid {
             cells_left: [0; 3],
             stride: [0; 3],
             index: self.index(cell),
+            found: 0,
         };
         let strides = [1, self.dims.x as isize, (self.dims.x * self.dims.y) as isize];
         for axis in 0..3 {
@@ -133,17 +134,26 @@ pub struct CellWalk {
     cells_left: [i32; 3],
     stride: [isize; 3],
     index: usize,
+    /// The cell of the stretch found last.
+    found: usize,
 }
 
 impl CellWalk {
+    /// The cell of the stretch that [`CellWalk::next_where`] gave last.
+    #[inline]
+    pub fn found(&self) -> usize {
+        self.found
+    }
+
     /// The next stretch `(t0, t1)` in a cell for whose index `value` has one, with that value.
     #[inline]
     pub fn next_where<T>(&mut self, value: impl Fn(usize) -> Option<T>) -> Option<(f32, f32, T)> {
         while self.t < self.t_end {
-            let found = value(self.index);
-            let t0 = self.t;
+            let (cell, t0) = (self.index, self.t);
+            let found = value(cell);
             self.step();
             if let Some(found) = found {
+                self.found = cell;
                 return Some((t0, self.t, found));
             }
         }

@@ -1,4 +1,4 @@
-//! Local upper bounds on a regular grid of cells.
+//! Local bounds on a regular grid of cells.
 
 use glam::{IVec3, Vec3A};
 use rayon::prelude::*;
@@ -6,7 +6,8 @@ use rayon::prelude::*;
 use super::cells::{CellGrid, CellWalk};
 use crate::math::{Aabb, Ray};
 
-/// Bounds are raised by this factor so that rounding cannot lift a coefficient above them.
+/// Bounds are raised by this factor, or lowered, so that rounding cannot lift a coefficient over
+/// them.
 const ROUNDING: f32 = 1.0 + 4.0 * f32::EPSILON;
 
 /// Upper bounds that hold over a region.
@@ -25,31 +26,36 @@ impl Majorant {
     }
 }
 
-/// Majorants on a grid of equal cells over a box.
+/// Majorants on a grid of equal cells over a box, and minorants apart, which few walks ask for.
 #[derive(Clone, Debug)]
 pub struct MajorantGrid {
     grid: CellGrid,
     cells: Vec<Majorant>,
+    /// Lower bounds of what [`Majorant::mu_t`] is an upper bound of.
+    minorants: Vec<f32>,
 }
 
 impl MajorantGrid {
-    /// Bounds `majorant_over` each cell of about `cell_size` inside `bounds`. Cell faces lie at
-    /// multiples of their size, so that they can agree with the bricks of a grid.
+    /// Takes `bounds_over` each cell of about `cell_size` inside `bounds`: the majorant there and
+    /// the minorant of the extinction's largest channel. Cell faces lie at multiples of their size,
+    /// so that they can agree with the bricks of a grid.
     pub fn build(
         bounds: Aabb,
         cell_size: Vec3A,
-        majorant_over: impl Fn(&Aabb) -> Majorant + Sync,
+        bounds_over: impl Fn(&Aabb) -> (Majorant, f32) + Sync,
     ) -> Self {
         let grid = CellGrid::new(bounds, cell_size);
-        let cells = (0..grid.len())
+        let (cells, minorants) = (0..grid.len())
             .into_par_iter()
             .with_min_len(64)
             .map(|index| {
-                let bound = majorant_over(&grid.clipped(grid.cell(index)));
-                Majorant { mu_t: ROUNDING * bound.mu_t, emission: ROUNDING * bound.emission }
+                let (bound, minorant) = bounds_over(&grid.clipped(grid.cell(index)));
+                let Majorant { mu_t, emission } = bound;
+                let raised = Majorant { mu_t: ROUNDING * mu_t, emission: ROUNDING * emission };
+                (raised, minorant / ROUNDING)
             })
-            .collect();
-        Self { grid, cells }
+            .unzip();
+        Self { grid, cells, minorants }
     }
 
     /// The cells.
@@ -70,6 +76,12 @@ impl MajorantGrid {
     /// Edge lengths of a cell.
     pub fn cell_size(&self) -> Vec3A {
         self.grid.cell_size()
+    }
+
+    /// The minorant of the stretch that [`MajorantGrid::next_occupied`] gave last.
+    #[inline]
+    pub fn minorant(&self, walk: &CellWalk) -> f32 {
+        self.minorants[walk.found()]
     }
 
     /// Calls `visit` with every cell's box and majorant.
@@ -102,10 +114,10 @@ mod tests {
     use super::*;
     use crate::math::PathRng;
 
-    fn checkered(region: &Aabb) -> Majorant {
+    fn checkered(region: &Aabb) -> (Majorant, f32) {
         let cell = (region.center()).floor().as_ivec3();
         let odd = (cell.x + cell.y + cell.z).rem_euclid(3);
-        Majorant { mu_t: odd as f32, emission: 0.0 }
+        (Majorant { mu_t: odd as f32, emission: 0.0 }, 0.5 * odd as f32)
     }
 
     #[test]
@@ -131,8 +143,10 @@ mod tests {
                 end = b;
                 if b - a > 1e-3 {
                     let p = ray.at(0.5 * (a + b));
-                    let expected = checkered(&Aabb::new(p, p)).mu_t;
-                    assert!((majorant.mu_t - expected).abs() < 1e-4, "{majorant:?} at {p}");
+                    let (expected, least) = checkered(&Aabb::new(p, p));
+                    let apart = (majorant.mu_t - expected.mu_t).abs();
+                    assert!(apart < 1e-4, "{majorant:?} at {p}");
+                    assert!((grid.minorant(&walk) - least).abs() < 1e-4, "at {p}");
                     seen += 1;
                 }
             }
@@ -143,7 +157,7 @@ mod tests {
     #[test]
     fn a_vast_box_gets_larger_cells_instead_of_more() {
         let bounds = Aabb::centered(Vec3A::splat(1e9));
-        let grid = MajorantGrid::build(bounds, Vec3A::splat(4.0), |_| Majorant::default());
+        let grid = MajorantGrid::build(bounds, Vec3A::splat(4.0), |_| Default::default());
         assert!(grid.cells.len() <= 1 << 21 && grid.cell_size().x > 1e6);
     }
 }

@@ -17,7 +17,7 @@ use flambeau::{
         Frame, PathSample, PixelSampler, Scene,
         strategy::{
             Advanced, BoostMode, Distance, LightSelection, NeeEvaluation, ScatterProbability,
-            Strategy,
+            Strategy, TransmittanceEstimator,
         },
     },
 };
@@ -98,8 +98,10 @@ pub fn boost_modes() -> [Strategy; 3] {
 }
 
 /// The finer keys in eight rows, an orthogonal array: every two keys meet in every pair of their
-/// values, and so do the last three, all three of them.
+/// values, and so do the last three, all three of them. The three estimators of transmittance meet
+/// most of them.
 pub fn finer() -> [Advanced; 8] {
+    use TransmittanceEstimator::{Marching, Ratio, Residual};
     let modes = [BoostMode::Stratified, BoostMode::Optimal, BoostMode::Clamped, BoostMode::Literal];
     std::array::from_fn(|row| {
         let [a, b, c] = [row & 1 != 0, row & 2 != 0, row & 4 != 0];
@@ -119,6 +121,7 @@ pub fn finer() -> [Advanced; 8] {
             } else {
                 ScatterProbability::Light
             },
+            transmittance: [Marching, Residual, Ratio, Marching][row / 2],
             equiangular: !c,
             guide_directions: !(a ^ c),
             guide_all_vertices: b ^ c,
@@ -179,7 +182,8 @@ pub fn full_name(strategy: &Strategy) -> String {
         strategy.advanced;
     let spread = if strategy.advanced.low_discrepancy { "even" } else { "random" };
     let on = |flag: bool, name: &'static str| if flag { name } else { "" };
-    let Advanced { distance, scatter_probability, equiangular, .. } = strategy.advanced;
+    let Advanced { transmittance, distance, scatter_probability, equiangular, .. } =
+        strategy.advanced;
     let Advanced { guide_directions, guide_all_vertices, .. } = strategy.advanced;
     let guides = [
         on(equiangular, " angles"),
@@ -188,7 +192,7 @@ pub fn full_name(strategy: &Strategy) -> String {
     ];
     format!(
         "{} {boost_mode:?} {boost_amount} {nee_evaluation:?} {light_selection:?} {spread} \
-         {distance:?} {scatter_probability:?}{}",
+         {distance:?} {scatter_probability:?} {transmittance:?}{}",
         name(strategy),
         guides.concat()
     )

@@ -2,10 +2,10 @@
 
 use egui::Ui;
 
-use super::Panel;
+use super::{Panel, explain};
 use crate::app::theme::space;
-use crate::app::widgets::{Number, choice, key_help};
-use crate::transport::strategy::{Advanced, BoostMode, Strategy};
+use crate::app::widgets::{Number, capitalized, choice, choice_but, key_help};
+use crate::transport::strategy::{Advanced, BoostMode, Strategy, Tracker};
 
 /// Shows them; what its toggle does not use is dimmed.
 pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
@@ -17,6 +17,8 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
     fire_as_light(ui, strategy, &mut edit);
     ui.add_space(space::TIGHT);
     guided_scattering(ui, strategy, opened, &mut edit);
+    ui.add_space(space::TIGHT);
+    walks(ui, strategy, &mut edit);
     let spread = &mut strategy.advanced.low_discrepancy;
     let help = key_help("strategy.advanced.low_discrepancy");
     if ui.checkbox(spread, "Spread samples").on_hover_text(help).changed() {
@@ -112,6 +114,23 @@ fn guided_scattering(
             }
         }
     });
+}
+
+/// How smoke is walked through: to lamps, and to where light scatters.
+fn walks(ui: &mut Ui, strategy: &mut Strategy, edit: &mut Option<&'static str>) {
+    let estimator = &mut strategy.advanced.transmittance;
+    if choice(ui, "Shadow rays", "strategy.advanced.transmittance", estimator) {
+        *edit = Some("shadow rays");
+    }
+    let reason = strategy.refusal_of(Tracker::Decomposition);
+    let refused = reason.map(|_| Tracker::Decomposition);
+    let tracker = &mut strategy.advanced.tracker;
+    if choice_but(ui, "Tracker", "strategy.advanced.tracker", tracker, refused) {
+        *edit = Some("tracker");
+    }
+    if let Some(reason) = reason {
+        explain(ui, &format!("Not beside the present settings: {}.", capitalized(reason)));
+    }
 }
 
 fn probe_count(opened: Advanced) -> Number<'static> {

@@ -9,7 +9,7 @@ use crate::{
     math::{Aabb, PathRng, Ray, luminance, mean},
     sampling::warp::spherical,
     surface::occluded,
-    transport::{direct, emission::Gatherer, scene::Scene, tracking},
+    transport::{direct, emission::Gatherer, scene::Scene, shadow},
     volume::phase::henyey_greenstein,
 };
 
@@ -158,7 +158,7 @@ fn from_everywhere(scene: &Scene, point: Vec3A, rng: &mut PathRng) -> f32 {
         return 0.0;
     }
     let medium = scene.world.along(ray, f32::INFINITY);
-    finite(radiance * mean(tracking::transmittance(medium, rng).0))
+    finite(radiance * mean(shadow::ratio(medium, rng).0))
 }
 
 fn finite(value: f32) -> f32 {

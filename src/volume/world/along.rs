@@ -169,6 +169,29 @@ impl<'w> MediumRay<'w> {
         self.present().fold(Rgb::ZERO, |sum, cursor| sum + cursor.mu_t(t))
     }
 
+    /// Lower and upper bounds of μ_t, per channel, over the segment handed out last.
+    pub fn bounds_of_mu_t(&self) -> (Rgb, Rgb) {
+        self.present().fold((Rgb::ZERO, Rgb::ZERO), |sum, cursor| {
+            let (low, high) = cursor.bounds_of_mu_t();
+            (sum.0 + low, sum.1 + high)
+        })
+    }
+
+    /// The albedo μ_s / μ_t and the phase function at parameter `t` of the segment handed out last.
+    /// Where one volume is alone its density is not read, and only what they are relative to each
+    /// other is known.
+    pub fn scattering(&self, t: f32) -> (Rgb, PhaseMix) {
+        let mut mix = PhaseMix::default();
+        if let [cursor] = self.inside.as_slice() {
+            let substance = cursor.instance.volume.substance();
+            let albedo = substance.albedo(cursor.local.at(t));
+            mix.add(substance.g, albedo);
+            return (albedo, mix);
+        }
+        let (mu_t, mu_s) = self.extinction(t);
+        (ratio(mu_s, mu_t), self.phase(t))
+    }
+
     /// μ_t and μ_s alone at parameter `t` of the segment handed out last.
     #[inline]
     pub fn extinction(&self, t: f32) -> (Rgb, Rgb) {
@@ -198,6 +221,11 @@ impl<'w> MediumRay<'w> {
         }
         mix
     }
+}
+
+/// Per channel; nothing where there is nothing.
+fn ratio(part: Rgb, whole: Rgb) -> Rgb {
+    Rgb::select(whole.cmpgt(Rgb::ZERO), part / whole, Rgb::ZERO)
 }
 
 /// One volume's way along the ray: the stretch it is in or comes to next.
@@ -276,6 +304,16 @@ impl<'w> Cursor<'w> {
             voxel_rate: self.instance.voxel_rate,
             uniform: matches!(self.way, Way::Uniform { .. }),
             gray: self.instance.volume.substance().is_gray(),
+        }
+    }
+
+    fn bounds_of_mu_t(&self) -> (Rgb, Rgb) {
+        match (&self.way, self.instance.volume.bounds()) {
+            (Way::Cells(walk), Bounds::Cells(grid)) => {
+                let tint = self.instance.volume.substance().tint();
+                (tint * grid.minorant(walk), tint * self.majorant.mu_t)
+            }
+            _ => (self.mu_t(self.t0), self.mu_t(self.t0)),
         }
     }
 
