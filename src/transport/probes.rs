@@ -13,16 +13,14 @@ mod halo;
 mod line;
 mod octree;
 mod probe;
+mod scores;
 
 use glam::{UVec2, Vec3A};
 use rayon::prelude::*;
 
-use super::{
-    emission::Gatherer,
-    scene::Scene,
-    strategy::{Distance, Strategy},
-};
+use super::{emission::Gatherer, scene::Scene, strategy::LightSelection};
 use crate::{
+    light::Scores,
     math::{Aabb, PathRng, Ray, mean},
     volume::{medium::Segment, world::MediumRay},
 };
@@ -49,6 +47,8 @@ pub struct Probes {
     octree: Octree,
     /// By node; those of inner nodes are what their leaves began as.
     probes: Vec<Probe>,
+    /// Of the lights, by node, at leaves from where any is seen; empty if they are not asked for.
+    scores: Vec<Option<Scores>>,
     /// Radiance scattered outside of the octree per unit of μ_s.
     outside: f32,
     /// Mean cosine of what scatters most.
@@ -61,8 +61,10 @@ impl Probes {
     /// The probes for `scene`, if its strategy asks for any and anything scatters. The same scene
     /// always gets the same ones.
     pub fn new(scene: &Scene) -> Option<Self> {
-        let Strategy { probe_mis, advanced, .. } = scene.strategy;
-        if !probe_mis || advanced.distance == Distance::Null {
+        let strategy = &scene.strategy;
+        let scores_lights = strategy.advanced.light_selection == LightSelection::Probes
+            && scene.lights.len(strategy.nee) > 1;
+        if !strategy.guides() && !scores_lights {
             return None;
         }
         let (bounds, scattering) = support(scene)?;
@@ -71,11 +73,20 @@ impl Probes {
         let builder = Builder { scene, gatherer: Gatherer::at_a_glance(), scattering };
         let first = builder.probe(0, &cube);
         let scattered = halo::scattered_share(scene);
-        let mut probes =
-            Self { octree, probes: vec![first], outside: 0.0, mean_cosine: 0.0, scattered };
-        probes.refine(&builder, advanced.probe_count);
+        let mut probes = Self {
+            octree,
+            probes: vec![first],
+            scores: Vec::new(),
+            outside: 0.0,
+            mean_cosine: 0.0,
+            scattered,
+        };
+        probes.refine(&builder, strategy.advanced.probe_count);
         probes.outside = OUTSIDE * probes.mean_radiance();
         probes.mean_cosine = probes.weighted_cosine();
+        if scores_lights {
+            probes.score_lights(&builder);
+        }
         Some(probes)
     }
 
@@ -103,6 +114,26 @@ impl Probes {
             let sum = |leaves: &[(u32, Aabb)]| leaves.iter().map(|l| self.power_of(l)).sum::<f32>();
             power += sum(&level) - sum(&split);
         }
+    }
+
+    fn score_lights(&mut self, builder: &Builder<'_>) {
+        let leaves = self.octree.leaves();
+        let scored: Vec<(u32, Option<Scores>)> = leaves
+            .par_iter()
+            .map(|(node, bounds)| (*node, builder.scores(*node, bounds)))
+            .collect();
+        self.scores = vec![None; self.probes.len()];
+        for (node, scores) in scored {
+            self.scores[node as usize] = scores;
+        }
+    }
+
+    /// Those of the lights around a point, if lights are chosen by them there.
+    pub fn scores(&self, point: Vec3A) -> Option<&Scores> {
+        if self.scores.is_empty() {
+            return None;
+        }
+        self.scores.get(self.octree.leaf_at(point)? as usize)?.as_ref()
     }
 
     /// The children of a leaf.
@@ -218,6 +249,11 @@ impl Builder<'_> {
     fn probe(&self, node: u32, bounds: &Aabb) -> Probe {
         let mut rng = PathRng::new(SEED, UVec2::new(node, 0), 0);
         Probe::new(self.scene, &self.gatherer, bounds, &mut rng)
+    }
+
+    /// Those of the lights around a leaf.
+    fn scores(&self, node: u32, bounds: &Aabb) -> Option<Scores> {
+        scores::scores(self.scene, node, bounds)
     }
 
     fn may_scatter(&self, bounds: &Aabb) -> bool {

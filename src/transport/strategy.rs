@@ -56,7 +56,9 @@ pub struct Advanced {
     /// it is the line all the same.
     pub nee_evaluation: NeeEvaluation,
     /// How a bounce chooses the light it looks at. `hierarchy` prefers what is bright and near;
-    /// `uniform` gives every light the same chance.
+    /// `uniform` gives every light the same chance; `probes` prefers what is seen to be bright from
+    /// probes all over the smoke, whose placing takes longer for that, also with the toggle off.
+    /// Where nothing scatters there are none, and the hierarchy chooses.
     pub light_selection: LightSelection,
     /// How far a ray goes before it scatters, with the probes on. `mis` takes the distances of the
     /// probes and of chance in turn and weighs both, so that it is good wherever one of them is;
@@ -114,6 +116,8 @@ pub enum LightSelection {
     Hierarchy,
     /// Gives each light the same chance, however weak or far.
     Uniform,
+    /// Prefers lights that probes nearby have seen. Best where much hides the lights.
+    Probes,
 }
 
 /// How the distance to a scattering event is drawn.
@@ -153,9 +157,6 @@ pub const PLANNED_KEYS: &[&str] = &[
     "advanced.integrator",
 ];
 
-/// Values of `advanced.light_selection` that the scene format knows but that are not there yet.
-pub const PLANNED_LIGHT_SELECTIONS: &[&str] = &["probes"];
-
 impl Strategy {
     /// The preset whose toggles these are, whatever the advanced choices; the fuller one where
     /// two presets coincide.
@@ -163,6 +164,11 @@ impl Strategy {
         [Preset::Full, Preset::Emission, Preset::Baseline]
             .into_iter()
             .find(|preset| Self { advanced: self.advanced, ..preset.strategy() } == *self)
+    }
+
+    /// Whether probes say where paths scatter.
+    pub fn guides(&self) -> bool {
+        self.probe_mis && self.advanced.distance != Distance::Null
     }
 }
 
