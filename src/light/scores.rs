@@ -55,7 +55,7 @@ struct Tally {
 }
 
 impl Scores {
-    /// From looks that the hierarchy has chosen, in any order; `None` where nothing is seen.
+    /// From looks that the hierarchy has chosen, in any order; `None` where none is known.
     ///
     /// With S_l the share of light l in what is seen and h_l its share of the looks, those without
     /// a name get theirs by r = Σ S_l / Σ h_l over them.

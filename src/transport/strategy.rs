@@ -116,7 +116,7 @@ pub enum LightSelection {
     Hierarchy,
     /// Gives each light the same chance, however weak or far.
     Uniform,
-    /// Prefers lights that probes nearby have seen. Best where much hides the lights.
+    /// Prefers lights that probes nearby have seen. Less noise where walls hide the others.
     Probes,
 }
 
