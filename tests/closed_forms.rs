@@ -3,12 +3,12 @@
 mod common;
 
 use common::{
-    Estimate, Verdicts, boost_modes, build, full_name, half_of_strategies, measure, measure_with,
-    name, with_strategy,
+    Estimate, Verdicts, boost_modes, build, few_guides, full_name, half_of_strategies, measure,
+    measure_with, name, with_strategy,
 };
 use flambeau::{
     math::Rgb,
-    transport::strategy::{Advanced, BoostMode, Strategy},
+    transport::strategy::{Advanced, BoostMode, Distance, Strategy},
 };
 
 /// A camera at z = −1 looking along +z at what lies above z = 0.
@@ -315,21 +315,43 @@ fn airlight(beta: f64, distance: f64, degrees: f64, length: f64, g: f64) -> Stri
     )
 }
 
+/// β, distance, degrees and length; g; radiance.
+const AIRLIGHTS: [([f64; 4], f64, f64); 5] = [
+    ([0.1, 5.0, 20.0, 20.0], 0.0, 0.005_838_609_954),
+    ([0.1, 5.0, 20.0, 20.0], 0.8, 0.004_566_362),
+    ([0.1, 5.0, 20.0, 20.0], -0.5, 0.005_534_000),
+    ([1.0, 2.0, 90.0, 3.0], 0.0, 0.001_823_829_325),
+    ([1.0, 2.0, 90.0, 3.0], 0.8, 0.000_234_263),
+];
+
 #[test]
 fn airlight_of_a_point_light() {
     let mut verdicts = Verdicts::default();
-    for (case, g, expected) in [
-        ([0.1, 5.0, 20.0, 20.0], 0.0, 0.005_838_609_954),
-        ([0.1, 5.0, 20.0, 20.0], 0.8, 0.004_566_362),
-        ([0.1, 5.0, 20.0, 20.0], -0.5, 0.005_534_000),
-        ([1.0, 2.0, 90.0, 3.0], 0.0, 0.001_823_829_325),
-        ([1.0, 2.0, 90.0, 3.0], 0.8, 0.000_234_263),
-    ] {
+    for (case, g, expected) in AIRLIGHTS {
         let [beta, distance, degrees, length] = case;
         let text = airlight(beta, distance, degrees, length, g);
         in_every_combination(&text, 400_000, |combination, estimate| {
             verdicts.check(&format!("β {beta}, g {g}, {combination}"), estimate, expected);
         });
+    }
+    verdicts.finish();
+}
+
+/// The same by every guide; those of later vertices have nothing to say here. The lines of probes
+/// know too little of a lamp beside the ray, equal angles know all of it.
+#[test]
+fn airlight_by_every_guide() {
+    let mut verdicts = Verdicts::default();
+    for (case, g, expected) in AIRLIGHTS {
+        let [beta, distance, degrees, length] = case;
+        let scene = build(&airlight(beta, distance, degrees, length, g));
+        for strategy in few_guides() {
+            let Advanced { distance, equiangular, .. } = strategy.advanced;
+            let alone = distance == Distance::Probes && !equiangular;
+            let paths = if alone { 900_000 } else { 100_000 };
+            let estimate = measure(&with_strategy(&scene, strategy), paths);
+            verdicts.check(&full_name(&strategy), &estimate, expected);
+        }
     }
     verdicts.finish();
 }

@@ -4,8 +4,8 @@
 mod common;
 
 use common::{
-    Verdicts, all_strategies, build, every_line_setting, full_name, half_of_strategies, measure,
-    name, with_strategy,
+    Verdicts, all_strategies, build, every_guide, every_line_setting, full_name,
+    half_of_strategies, measure, name, with_strategy,
 };
 
 use flambeau::transport::strategy::{NeeEvaluation, Strategy};
@@ -106,6 +106,22 @@ fn nothing_is_lost_where_all_is_white() {
         material = { type = "diffuse", reflectance = 1.0 }
     "#;
     check_everywhere(&format!("{CAMERA}{surfaces}{}", volumes(1.0, "")), 100_000, 1.0);
+}
+
+/// The same by every guide. Probes alone have rare heavy samples in thick smoke; this is thinner.
+#[test]
+fn nothing_is_lost_by_any_guide() {
+    let environment = "[environment]\nradiance = 1.0\n";
+    let volumes = volumes(1.0, "").replace("scale = 3.0", "scale = 1.0");
+    let scene = build(&format!("{CAMERA}{environment}{volumes}"));
+    let mut verdicts = Verdicts::default();
+    for strategy in every_guide() {
+        let estimate = measure(&with_strategy(&scene, strategy), 50_000);
+        for channel in 0..3 {
+            verdicts.check_channel(&full_name(&strategy), &estimate, channel, 1.0);
+        }
+    }
+    verdicts.finish();
 }
 
 /// A camera inside a medium without borders that glows: no way out, the same radiance everywhere.

@@ -2,7 +2,10 @@
 
 mod common;
 
-use common::{Verdicts, build, full_name, half_of_strategies, measure, with_strategy};
+use common::{
+    Verdicts, build, every_guide, few_guides, full_name, half_of_strategies, measure,
+    measure_one_after_another, measure_with, with_strategy,
+};
 use flambeau::transport::{
     Scene,
     probes::Probes,
@@ -55,31 +58,6 @@ const FLOOR: &str = r#"
     material = { type = "diffuse", reflectance = 0.5 }
 "#;
 
-/// Every way to choose a distance with all other guides on and with none.
-fn few_guides() -> Vec<Strategy> {
-    let all = |a: &Advanced| a.equiangular && a.guide_directions && a.guide_all_vertices;
-    let none = |a: &Advanced| !a.equiangular && !a.guide_directions && !a.guide_all_vertices;
-    every_guide().into_iter().filter(|s| all(&s.advanced) || none(&s.advanced)).collect()
-}
-
-/// Every way to choose a distance with every other guide on and off.
-fn every_guide() -> Vec<Strategy> {
-    let mut all = Vec::new();
-    for distance in [Distance::Mis, Distance::Probes] {
-        for bits in 0..8_u32 {
-            let advanced = Advanced {
-                distance,
-                equiangular: bits & 1 != 0,
-                guide_directions: bits & 2 != 0,
-                guide_all_vertices: bits & 4 != 0,
-                ..Advanced::default()
-            };
-            all.push(Strategy { advanced, ..Preset::Full.strategy() });
-        }
-    }
-    all
-}
-
 fn guides_agree(text: &str, settings: Vec<Strategy>, paths: u32) {
     let scene = build(text);
     let unguided = Strategy { probe_mis: false, ..Preset::Full.strategy() };
@@ -123,6 +101,103 @@ fn guides_agree_whatever_else_is_on() {
     let guided = half_of_strategies().into_iter().filter(|strategy| strategy.probe_mis);
     let text = EMBEDDED.replace("SCALE", "1.5") + HAZE;
     guides_agree(&text, guided.collect(), 2_000_000);
+}
+
+/// Of a ray's first scattering event alone: probes without chance are as good as chance wherever
+/// their line has a density, and it has one wherever something scatters.
+#[test]
+fn probes_alone_find_all_that_chance_finds() {
+    let text = EMBEDDED.replace("SCALE", "0.8") + "[path]\nmax_scatters = 1\n";
+    let scene = build(&text);
+    let estimate = |distance, paths| {
+        let advanced = Advanced {
+            distance,
+            equiangular: false,
+            guide_directions: false,
+            ..Advanced::default()
+        };
+        let strategy = Strategy { advanced, ..Preset::Full.strategy() };
+        let estimate = measure_with(&with_strategy(&scene, strategy), paths, |path| path.direct);
+        let weak = |c: usize| estimate.error(c) > common::POWER * estimate.mean[c];
+        assert!(!(0..3).any(weak), "{distance:?}: too weak {estimate:?}");
+        estimate
+    };
+    let (chance, probes) =
+        (estimate(Distance::Null, 1_400_000), estimate(Distance::Probes, 400_000));
+    let mut verdicts = Verdicts::default();
+    (0..3).for_each(|c| verdicts.check_equal("first event", &probes, &chance, c));
+    verdicts.finish();
+}
+
+/// Half of the samples by some probes, half by others or by none: each half has the same mean, so
+/// that the picture does not care when probes are placed anew.
+#[test]
+fn probes_placed_anew_change_nothing() {
+    let scene = build(&EMBEDDED.replace("SCALE", "0.8"));
+    let by = |distance, probe_count| {
+        let advanced = Advanced { distance, probe_count, ..Advanced::default() };
+        with_strategy(&scene, Strategy { advanced, ..Preset::Full.strategy() })
+    };
+    let reference = measure(&by(Distance::Null, 64), 800_000);
+    let mut verdicts = Verdicts::default();
+    for (label, scenes) in [
+        ("few, then many", [by(Distance::Mis, 200), by(Distance::Mis, 6000)]),
+        ("none, then some", [by(Distance::Null, 64), by(Distance::Mis, 1000)]),
+        ("many, then few alone", [by(Distance::Mis, 3000), by(Distance::Probes, 300)]),
+    ] {
+        let estimate = measure_one_after_another(&scenes, 400_000);
+        for channel in 0..3 {
+            verdicts.check_equal(label, &estimate, &reference, channel);
+            let weak = estimate.error(channel) > common::POWER * estimate.mean[channel];
+            assert!(!weak, "{label}: too weak {estimate:?}");
+        }
+    }
+    verdicts.finish();
+}
+
+/// A sun and a spot through a gap between two boards: shafts of light in uneven mist that scatters
+/// forward.
+#[test]
+fn guides_agree_on_shafts_of_light() {
+    let text = r#"
+        [camera]
+        position = [0, -4, 0.3]
+        target = [0, 0, 0]
+        fov_x = 14
+        [[volume]]
+        shape = "noise"
+        half_size = [1.5, 1.2, 1.0]
+        frequency = 1.0
+        contrast = 2.0
+        density = { scale = 0.25 }
+        albedo = [0.95, 0.9, 0.85]
+        phase = { g = 0.6 }
+        [[light]]
+        type = "sun"
+        direction = [0.3, -0.2, -1]
+        irradiance = 2.0
+        angle = 1
+        [[light]]
+        type = "spot"
+        position = [-0.8, 0.5, 2.5]
+        target = [0, 0, 0]
+        intensity = 8.0
+        cone = 30
+        blend = 0.5
+        [[surface]]
+        shape = "quad"
+        center = [-1.9, 0, 1.1]
+        half_u = [1.5, 0, 0]
+        half_v = [0, 2, 0]
+        material = { type = "black" }
+        [[surface]]
+        shape = "quad"
+        center = [1.9, 0, 1.1]
+        half_u = [1.5, 0, 0]
+        half_v = [0, 2, 0]
+        material = { type = "black" }
+    "#;
+    guides_agree(text, few_guides(), 400_000);
 }
 
 fn probes(text: &str, count: u32) -> (Scene, Option<Probes>) {

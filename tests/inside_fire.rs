@@ -218,6 +218,7 @@ fn mis_bounds_the_variance_near_the_border() {
 fn no_look_from_inside_exceeds_the_brightest_ray() {
     let slab = glowing_slab();
     let gatherer = Gatherer::new(&slab, UVec2::ONE);
+    let choice = direct::choice(&slab.strategy);
     let brightest = 0.5_f32;
     let mut sums = [0.0; 2];
     const LOOKS: u32 = 20_000;
@@ -225,12 +226,12 @@ fn no_look_from_inside_exceeds_the_brightest_ray() {
         let vertex = vertex_below(depth);
         for i in 0..LOOKS {
             let mut rng = PathRng::new(seed(), UVec2::ZERO, i);
-            let light = direct::sample_lights(&slab, &gatherer, &vertex, &mut rng).light;
+            let light = direct::sample_lights(&slab, &gatherer, &vertex, &choice, &mut rng).light;
             assert!(light.max_element() <= brightest * 1.0001, "{depth}: a look brings {light}");
             let turn = vertex.sample(&mut rng).unwrap();
             let ray: Ray = vertex.ray(turn.direction);
-            let departure =
-                Departure { from: vertex.receiver(), pdf_solid_angle: turn.pdf_solid_angle };
+            let (from, pdf_solid_angle) = (vertex.receiver(), turn.pdf_solid_angle);
+            let departure = Departure { from, choice, pdf_solid_angle };
             let weight = direct::weight_of_emission(&slab, &ray, Some(&departure));
             assert!((0.0..=1.0).contains(&weight));
             sums[0] += f64::from(light.x);

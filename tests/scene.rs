@@ -233,8 +233,8 @@ const MALFORMED: &[(&str, &[&str])] = &[
         &["strategy.advanced.probe_learning:", "strategy is not there yet"],
     ),
     (
-        "[strategy.advanced]\nlight_selection = 'probes'",
-        &["strategy.advanced.light_selection:", "not there yet", "\"hierarchy\""],
+        "[strategy.advanced]\nlight_selection = 'probe'",
+        &["strategy.advanced.light_selection:", "\"hierarchy\"", "\"probes\""],
     ),
     (
         "[strategy.advanced]\ntracker = 'decomposition'",

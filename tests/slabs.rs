@@ -8,7 +8,7 @@
 mod common;
 
 use common::{
-    Verdicts, build, every_line_setting, full_name, half_of_strategies, measure, name,
+    Verdicts, build, every_guide, every_line_setting, full_name, half_of_strategies, measure, name,
     with_strategy,
 };
 use flambeau::transport::strategy::{Preset, Strategy};
@@ -83,6 +83,21 @@ fn reflectance_and_transmittance() {
                     expected,
                 );
             }
+        }
+    }
+    verdicts.finish();
+}
+
+/// Transmittance by every guide, of slabs thin enough for probes alone.
+#[test]
+fn transmittance_by_every_guide() {
+    let mut verdicts = Verdicts::default();
+    for [g, albedo, depth, _, t, _] in [ROWS[0], ROWS[3]] {
+        let scene = build(&slab(g, albedo, depth, &black_plane(3.0)));
+        for strategy in every_guide() {
+            let label = format!("T of g {g}, albedo {albedo}, {}", full_name(&strategy));
+            let estimate = measure(&with_strategy(&scene, strategy), paths_for(t, &strategy) / 3);
+            verdicts.check(&label, &estimate, t);
         }
     }
     verdicts.finish();

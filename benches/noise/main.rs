@@ -43,6 +43,9 @@ struct Arguments {
     /// Render as the command line does, film and schedule included, not by a bare loop over pixels.
     #[arg(long)]
     film: bool,
+    /// Only rows whose name contains this.
+    #[arg(long)]
+    rows: Option<String>,
     /// Name the scenes.
     #[arg(long)]
     list: bool,
@@ -75,10 +78,14 @@ impl Arguments {
                 && (scene.has_lamps || !walks);
             all || filters.iter().any(|filter| scene.name.contains(filter.as_str()))
         };
-        let rows = |scene: &BenchScene| match () {
-            () if modes => rows::modes(),
-            () if walks => rows::walks(),
-            () => rows::toggles(scene),
+        let named = |row: &Row| self.rows.as_ref().is_none_or(|part| row.name.contains(part));
+        let rows = |scene: &BenchScene| {
+            let all = match () {
+                () if modes => rows::modes(),
+                () if walks => rows::walks(),
+                () => rows::toggles(scene),
+            };
+            all.into_iter().filter(named).collect()
         };
         scenes::all().into_iter().filter(chosen).map(|s| (s, rows(&s))).collect()
     }

@@ -55,6 +55,8 @@ pub fn toggles(scene: &BenchScene) -> Vec<Row> {
     if scene.many_lights {
         let uniform = Advanced { light_selection: LightSelection::Uniform, ..default };
         rows.push(row("full, lights uniform", full_but(uniform)));
+        let probes = Advanced { light_selection: LightSelection::Probes, ..default };
+        rows.push(row("full, lights by probes", full_but(probes)));
     }
     let independent = Advanced { low_discrepancy: false, ..default };
     rows.push(row("full, independent samples", full_but(independent)));

@@ -80,6 +80,10 @@ pub fn all() -> Vec<BenchScene> {
             set: &["film.size=[128, 128]", "environment.radiance=0.0"],
             ..own("street", "200 torches in thin fog", "../../../scenes/street.toml")
         },
+        BenchScene {
+            many_lights: true,
+            ..own("rooms", "200 torches between walls, in thin fog", "rooms.toml")
+        },
         own("no_soot", "fire without extinction, on a floor", "no_soot.toml"),
         own("chromatic_smoke", "smoke that colors what shines through", "chromatic_smoke.toml"),
         lamps("lamps_thin", "lamps around thin smoke", &["volume.0.density.scale=1.0"]),

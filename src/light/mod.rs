@@ -1,11 +1,13 @@
 //! Lights: what can be looked at from a vertex, what is met by chance, and with which densities.
 
 mod local;
+mod scores;
 mod selector;
 mod sun;
 mod tree;
 
 pub use local::{Point, Spot};
+pub use scores::{Glimpse, Scores, Shares};
 pub use sun::Sun;
 pub use tree::{Emitter, LightTree, Receiver};
 
@@ -66,12 +68,34 @@ pub struct LightSample {
 }
 
 /// Which lights take part, and how one is chosen among them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Choice {
     /// Emissive volumes are among them.
     pub volumes: bool,
+    /// How one is chosen.
+    pub by: By,
+}
+
+/// How a light is chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum By {
+    /// By what the hierarchy thinks it may bring.
+    Hierarchy,
     /// Each has the same probability, wherever it is.
-    pub uniform: bool,
+    Uniform,
+    /// By what is known of the place. They hold for one receiver.
+    Shares(Shares),
+}
+
+/// A light that was chosen.
+#[derive(Clone, Copy, Debug)]
+pub struct Chosen<'s> {
+    /// Its index in the scene.
+    pub index: u32,
+    /// The light.
+    pub light: &'s Light,
+    /// With which probability.
+    pub probability: f32,
 }
 
 /// All lights of a scene.
@@ -113,52 +137,76 @@ impl Lights {
         Self { environment, lights, light_of_surface, light_of_instance, all, without_volumes }
     }
 
-    /// Draws a light by what it may bring to a receiver, with its probability; `None` where no
-    /// light can bring anything.
-    pub fn choose(
+    /// The light that `pick`, in [0, 1), chooses for a receiver; `None` where no light can bring
+    /// anything.
+    pub fn choose(&self, to: &Receiver, choice: &Choice, pick: f64) -> Option<Chosen<'_>> {
+        let (index, probability) = self.selector(choice.volumes).choose(to, &choice.by, pick)?;
+        Some(Chosen { index, light: self.lights.get(index as usize)?, probability })
+    }
+
+    /// Probability with which [`Lights::choose`] draws a light, by its index in the scene.
+    pub fn probability(&self, light: u32, to: &Receiver, choice: &Choice) -> f32 {
+        self.selector(choice.volumes).probability(light, to, &choice.by)
+    }
+
+    /// Number of lights to choose from, with or without emissive volumes.
+    pub fn len(&self, volumes: bool) -> usize {
+        self.selector(volumes).len()
+    }
+
+    /// Rough irradiance of a light at the receiver, if nothing is in the way.
+    pub fn irradiance(&self, light: u32, to: &Receiver) -> f32 {
+        self.all.guess(light, to).map_or(0.0, |guess| guess.0)
+    }
+
+    /// The choice by `scores` at a receiver that passes on light from a unit direction by a
+    /// `value`; a rough one will do.
+    pub fn choice_by(
         &self,
+        scores: &Scores,
         to: &Receiver,
-        choice: Choice,
-        rng: &mut PathRng,
-    ) -> Option<(&Light, f32)> {
-        let (light, probability) = self.selector(choice).choose(to, choice.uniform, rng)?;
-        Some((self.lights.get(light as usize)?, probability))
+        volumes: bool,
+        value: impl Fn(Vec3A) -> f32,
+    ) -> Choice {
+        let selector = self.selector(volumes);
+        let shares = scores.at(|light| {
+            let guess = selector.guess(light, to);
+            guess.map_or(0.0, |(irradiance, direction)| irradiance * value(direction))
+        });
+        Choice { volumes, by: By::Shares(shares) }
     }
 
     /// Density over solid angle with which, from a receiver, the direction is drawn that ended at
     /// `hit` on the surface `index`, the choice of the light included; 0 where it cannot be.
-    pub fn pdf_of_surface(&self, index: usize, to: &Receiver, choice: Choice, hit: &Hit) -> f32 {
+    pub fn pdf_of_surface(&self, index: usize, to: &Receiver, choice: &Choice, hit: &Hit) -> f32 {
         let Some(Some(light)) = self.light_of_surface.get(index) else { return 0.0 };
         match &self.lights[*light as usize] {
             Light::Surface { shape, .. } => {
-                self.selector(choice).probability(*light, to, choice.uniform)
-                    * shape.pdf_solid_angle(to.position, hit)
+                self.probability(*light, to, choice) * shape.pdf_solid_angle(to.position, hit)
             }
             _ => 0.0,
         }
     }
 
     /// Probability with which the emissive volume `instance` is chosen from a receiver.
-    pub fn probability_of_volume(&self, instance: u32, to: &Receiver, choice: Choice) -> f32 {
+    pub fn probability_of_volume(&self, instance: u32, to: &Receiver, choice: &Choice) -> f32 {
         match self.light_of_instance.get(instance as usize) {
-            Some(Some(light)) => self.selector(choice).probability(*light, to, choice.uniform),
+            Some(Some(light)) => self.selector(choice.volumes).probability(*light, to, &choice.by),
             _ => 0.0,
         }
     }
 
     /// Radiance of every sun's disk seen along the unit `direction`, each with the density of
-    /// looking there from a receiver.
+    /// looking there from a receiver by a choice.
     pub fn suns_behind(
         &self,
-        to: Option<Receiver>,
-        choice: Choice,
+        from: Option<(&Receiver, &Choice)>,
         direction: Vec3A,
     ) -> impl Iterator<Item = (&Sun, f32)> {
-        let selector = self.selector(choice);
-        selector.suns().filter_map(move |index| match &self.lights[index as usize] {
+        self.all.suns().filter_map(move |index| match &self.lights[index as usize] {
             Light::Sun(sun) if sun.shows_along(direction) => {
-                let pdf = to.map_or(0.0, |to| {
-                    selector.probability(index, &to, choice.uniform) * sun.pdf_solid_angle()
+                let pdf = from.map_or(0.0, |(to, choice)| {
+                    self.probability(index, to, choice) * sun.pdf_solid_angle()
                 });
                 Some((sun, pdf))
             }
@@ -171,8 +219,8 @@ impl Lights {
         self.lights.iter().filter_map(|light| light.emitter(world)).collect()
     }
 
-    fn selector(&self, choice: Choice) -> &Selector {
-        if choice.volumes { &self.all } else { &self.without_volumes }
+    fn selector(&self, volumes: bool) -> &Selector {
+        if volumes { &self.all } else { &self.without_volumes }
     }
 }
 

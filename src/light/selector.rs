@@ -1,21 +1,29 @@
 //! Choosing one light among many: suns by what they bring, the rest through the hierarchy.
 
-use super::{Light, LightTree, MOST_IMPORTANT, Receiver};
-use crate::{
-    math::{PathRng, Slot, luminance},
-    volume::world::World,
-};
+use glam::Vec3A;
+
+use super::{By, Light, LightTree, MOST_IMPORTANT, Receiver};
+use crate::{math::luminance, volume::world::World};
 
 /// Chooses among some of a scene's lights, by their index in the scene.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Selector {
-    /// Suns with the luminance of their irradiance.
-    suns: Vec<(u32, f32)>,
+    suns: Vec<DistantLight>,
     /// The lights of the tree, in its order.
     placed: Vec<u32>,
     tree: LightTree,
     /// Where each light of the scene is.
     places: Vec<Place>,
+}
+
+/// A sun.
+#[derive(Clone, Copy, Debug)]
+struct DistantLight {
+    light: u32,
+    /// Luminance of its irradiance.
+    importance: f32,
+    /// Unit, towards its middle.
+    direction: Vec3A,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -35,7 +43,11 @@ impl Selector {
                 (Light::Sun(sun), _) => {
                     let irradiance = luminance(sun.irradiance());
                     let importance = if irradiance > 0.0 { irradiance } else { 0.0 };
-                    suns.push((index, importance.min(MOST_IMPORTANT)));
+                    suns.push(DistantLight {
+                        light: index,
+                        importance: importance.min(MOST_IMPORTANT),
+                        direction: sun.direction(),
+                    });
                     Place::Sun(suns.len() as u32 - 1)
                 }
                 (_, Some(emitter)) => {
@@ -51,27 +63,35 @@ impl Selector {
 
     /// The suns' indices.
     pub(super) fn suns(&self) -> impl Iterator<Item = u32> {
-        self.suns.iter().map(|sun| sun.0)
+        self.suns.iter().map(|sun| sun.light)
     }
 
-    /// A light and its probability.
-    pub(super) fn choose(
-        &self,
-        to: &Receiver,
-        uniform: bool,
-        rng: &mut PathRng,
-    ) -> Option<(u32, f32)> {
-        let count = self.suns.len() + self.placed.len();
-        if count == 0 {
-            return None;
+    /// How many lights there are to choose from.
+    pub(super) fn len(&self) -> usize {
+        self.suns.len() + self.placed.len()
+    }
+
+    /// A light and its probability; `pick` is in [0, 1).
+    pub(super) fn choose(&self, to: &Receiver, by: &By, pick: f64) -> Option<(u32, f32)> {
+        match by {
+            By::Hierarchy => self.choose_by_hierarchy(to, pick),
+            By::Uniform => {
+                let index = ((pick * self.len() as f64) as usize).min(self.len().checked_sub(1)?);
+                let sun = self.suns.get(index).map(|sun| sun.light);
+                let light = sun.unwrap_or_else(|| self.placed[index - self.suns.len()]);
+                Some((light, 1.0 / self.len() as f32))
+            }
+            By::Shares(shares) => match shares.pick(pick) {
+                Ok(light) => Some((light, self.probability(light, to, by))),
+                Err(left) => {
+                    let (light, probability) = self.choose_by_hierarchy(to, left)?;
+                    Some((light, shares.probability(light, probability)))
+                }
+            },
         }
-        let pick = rng.at64(Slot::LightPick);
-        if uniform {
-            let index = ((pick * count as f64) as usize).min(count - 1);
-            let sun = self.suns.get(index).map(|sun| sun.0);
-            let light = sun.unwrap_or_else(|| self.placed[index - self.suns.len()]);
-            return Some((light, 1.0 / count as f32));
-        }
+    }
+
+    fn choose_by_hierarchy(&self, to: &Receiver, pick: f64) -> Option<(u32, f32)> {
         if self.suns.is_empty() {
             let (index, probability) = self.tree.sample(to, pick)?;
             return Some((self.placed[index as usize], probability));
@@ -82,7 +102,7 @@ impl Selector {
     fn choose_with_suns(&self, to: &Receiver, pick: f64) -> Option<(u32, f32)> {
         let total = self.total(to);
         let mut left = pick * f64::from(total);
-        for &(light, importance) in &self.suns {
+        for &DistantLight { light, importance, .. } in &self.suns {
             if left < f64::from(importance) {
                 return Some((light, importance / total));
             }
@@ -95,18 +115,43 @@ impl Selector {
     }
 
     /// Probability with which [`Selector::choose`] draws a light.
-    pub(super) fn probability(&self, light: u32, to: &Receiver, uniform: bool) -> f32 {
-        let place = self.places.get(light as usize).copied().unwrap_or(Place::Nowhere);
-        if uniform {
-            return match place {
-                Place::Nowhere => 0.0,
-                _ => 1.0 / (self.suns.len() + self.placed.len()) as f32,
-            };
+    pub(super) fn probability(&self, light: u32, to: &Receiver, by: &By) -> f32 {
+        match (by, self.place(light)) {
+            (_, Place::Nowhere) => 0.0,
+            (By::Hierarchy, place) => self.probability_by_hierarchy(place, to),
+            (By::Uniform, _) => 1.0 / self.len() as f32,
+            (By::Shares(shares), place) => {
+                shares.probability(light, self.probability_by_hierarchy(place, to))
+            }
         }
+    }
+
+    fn place(&self, light: u32) -> Place {
+        self.places.get(light as usize).copied().unwrap_or(Place::Nowhere)
+    }
+
+    /// Rough irradiance of a light at the receiver, if nothing is in the way, and the unit
+    /// direction towards its middle; `None` where it brings nothing.
+    pub(super) fn guess(&self, light: u32, to: &Receiver) -> Option<(f32, Vec3A)> {
+        match self.place(light) {
+            Place::Sun(sun) => {
+                let sun = &self.suns[sun as usize];
+                Some((sun.importance, sun.direction))
+            }
+            Place::Tree(index) => {
+                let towards = self.tree.center_of(index)? - to.position;
+                let importance = self.tree.importance_of(index, to);
+                (importance > 0.0).then(|| (importance, towards.normalize_or_zero()))
+            }
+            Place::Nowhere => None,
+        }
+    }
+
+    fn probability_by_hierarchy(&self, place: Place, to: &Receiver) -> f32 {
         match place {
             Place::Sun(sun) => {
                 let total = self.total(to);
-                if total > 0.0 { self.suns[sun as usize].1 / total } else { 0.0 }
+                if total > 0.0 { self.suns[sun as usize].importance / total } else { 0.0 }
             }
             Place::Tree(index) if self.suns.is_empty() => self.tree.probability(index, to),
             Place::Tree(index) => {
@@ -120,6 +165,6 @@ impl Selector {
 
     /// What all lights may bring.
     fn total(&self, to: &Receiver) -> f32 {
-        self.suns.iter().map(|sun| sun.1).sum::<f32>() + self.tree.importance(to)
+        self.suns.iter().map(|sun| sun.importance).sum::<f32>() + self.tree.importance(to)
     }
 }

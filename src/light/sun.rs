@@ -30,6 +30,11 @@ impl Sun {
         Self { to_sun: -direction.normalize(), irradiance, one_minus_cos, visible }
     }
 
+    /// Unit direction towards its middle.
+    pub fn direction(&self) -> Vec3A {
+        self.to_sun
+    }
+
     /// What it brings to a plane across its direction.
     pub fn irradiance(&self) -> Rgb {
         self.irradiance

@@ -45,6 +45,8 @@ pub struct LightTree {
     /// For each emitter the turns from the root, the first in the lowest bit, 1 for the second
     /// child; `None` for those that are not in the tree.
     trails: Vec<Option<u64>>,
+    /// For each emitter its node; the root for those that are not in the tree.
+    leaves: Vec<u32>,
     /// Intensity of the brightest emitter.
     brightest: f32,
 }
@@ -102,6 +104,26 @@ impl LightTree {
         } else {
             0.0
         }
+    }
+
+    /// Rough irradiance at the receiver of one emitter, if nothing is in the way; 0 where it cannot
+    /// contribute.
+    #[inline]
+    pub fn importance_of(&self, index: u32, to: &Receiver) -> f32 {
+        let Some(node) = self.node_of(index) else { return 0.0 };
+        let irradiance = f64::from(self.brightest) * node.importance(to);
+        if irradiance > 0.0 { irradiance.min(f64::from(MOST_IMPORTANT)) as f32 } else { 0.0 }
+    }
+
+    /// The middle of an emitter in the tree.
+    #[inline]
+    pub fn center_of(&self, index: u32) -> Option<Vec3A> {
+        self.node_of(index).map(|node| node.bounds.center())
+    }
+
+    fn node_of(&self, index: u32) -> Option<&Node> {
+        self.trails.get(index as usize).copied().flatten()?;
+        self.nodes.get(self.leaves[index as usize] as usize)
     }
 
     /// An emitter and its probability. `None` where none can contribute, or where the descent ends

@@ -7,7 +7,7 @@ use toml::{Table, Value};
 use super::keys::{self, join};
 use super::schema::{self, Bounds, Only};
 use crate::error::{Error, Result};
-use crate::transport::strategy::{PLANNED_KEYS, PLANNED_LIGHT_SELECTIONS};
+use crate::transport::strategy::PLANNED_KEYS;
 
 /// Checks a whole scene; `source` names it in errors.
 pub(super) fn check(scene: &Table, source: &str) -> Result<()> {
@@ -215,7 +215,6 @@ fn is_planned(general_path: &str) -> bool {
 
 fn is_planned_value(general_path: &str, name: &str) -> bool {
     match general_path {
-        "strategy.advanced.light_selection" => PLANNED_LIGHT_SELECTIONS.contains(&name),
         "surface.N.shape" => name == "mesh",
         _ => false,
     }

@@ -16,8 +16,8 @@ use super::{
     vertex::Vertex,
 };
 use crate::{
-    light::{Choice, Light, LightSample, Receiver},
-    math::{PathRng, Ray, Rgb, Slot},
+    light::{By, Choice, Chosen, Glimpse, Light, LightSample, Receiver},
+    math::{PathRng, Ray, Rgb, Slot, mean},
     sampling::mis,
     surface::{self, Intersection, occluded},
 };
@@ -30,19 +30,28 @@ const SHORT_OF_LIGHT: f32 = 1.0 - 1e-4;
 pub struct Departure {
     /// Where looks at lights would have gone from.
     pub from: Receiver,
+    /// How they would have been chosen.
+    pub choice: Choice,
     /// Density of the direction it took.
     pub pdf_solid_angle: f32,
 }
 
-/// Which lights take part, by the toggles.
-fn choice(strategy: &Strategy) -> Choice {
-    let uniform = strategy.advanced.light_selection == LightSelection::Uniform;
-    Choice { volumes: strategy.nee, uniform }
+/// Which lights take part, by the toggles, and how one is chosen where no probes have a say.
+pub fn choice(strategy: &Strategy) -> Choice {
+    let by = match strategy.advanced.light_selection {
+        LightSelection::Hierarchy | LightSelection::Probes => By::Hierarchy,
+        LightSelection::Uniform => By::Uniform,
+    };
+    Choice { volumes: strategy.nee, by }
 }
 
 /// A direction drawn at a receiver towards one of the lights.
 #[derive(Clone, Copy, Debug)]
-struct Aim {
+struct Aim<'a> {
+    from: &'a Receiver,
+    choice: &'a Choice,
+    /// The light's index in the scene, and the probability of choosing it.
+    light: (u32, f32),
     /// Unit direction towards it.
     direction: Vec3A,
     at: Target,
@@ -51,57 +60,72 @@ struct Aim {
 /// What is looked at.
 #[derive(Clone, Copy, Debug)]
 enum Target {
-    /// A light with a place of its own, chosen with a probability.
-    Solid { light: LightSample, probability: f32 },
+    /// A light with a place of its own.
+    Solid { light: LightSample },
     /// A point of an emissive volume.
     Volume { point: Vec3A },
 }
 
-impl Aim {
-    /// Chooses a light and draws a direction towards it; `None` where there is nothing to look at.
-    fn new(scene: &Scene, from: &Receiver, rng: &mut PathRng) -> Option<Self> {
-        let (light, probability) = scene.lights.choose(from, choice(&scene.strategy), rng)?;
+impl<'a> Aim<'a> {
+    /// Chooses a light by `pick`, in [0, 1), and draws a direction towards it; `None` where there
+    /// is nothing to look at.
+    fn new(
+        scene: &Scene,
+        from: &'a Receiver,
+        choice: &'a Choice,
+        pick: f64,
+        rng: &mut PathRng,
+    ) -> Option<Self> {
+        let Chosen { index, light, probability } = scene.lights.choose(from, choice, pick)?;
+        let chosen = (index, probability);
         if let Light::Volume(instance) = light {
             let pick = rng.at64(Slot::LightCell);
             let u = [Slot::LightX, Slot::LightY, Slot::LightZ].map(|slot| rng.at(slot)).into();
             let volume = &scene.world.instances()[*instance as usize];
             let point = volume.sample_emission(pick, u)?;
             let direction = (point - from.position).try_normalize()?;
-            return Some(Self { direction, at: Target::Volume { point } });
+            return Some(Self {
+                from,
+                choice,
+                light: chosen,
+                direction,
+                at: Target::Volume { point },
+            });
         }
         let light = light.sample(from.position, rng)?;
-        Some(Self { direction: light.direction, at: Target::Solid { light, probability } })
+        let direction = light.direction;
+        Some(Self { from, choice, light: chosen, direction, at: Target::Solid { light } })
     }
 
     /// Density over solid angle of the direction, the choice of the light included.
-    fn pdf_solid_angle(&self, scene: &Scene, from: &Receiver) -> f32 {
+    fn pdf_solid_angle(&self, scene: &Scene) -> f32 {
         match &self.at {
-            Target::Solid { light, probability } => probability * light.pdf,
-            Target::Volume { .. } => pdf_of_volumes(scene, &self.ray(from), from),
+            Target::Solid { light } => self.light.1 * light.pdf,
+            Target::Volume { .. } => pdf_of_volumes(scene, &self.ray(), self.from, self.choice),
         }
     }
 
     /// Whether scattered rays meet what is looked at as well, so that MIS must share it.
     fn can_be_met(&self) -> bool {
         match &self.at {
-            Target::Solid { light, .. } => light.can_be_met,
+            Target::Solid { light } => light.can_be_met,
             Target::Volume { .. } => true,
         }
     }
 
     /// The point that is looked at; `None` for the sun, which is nowhere.
-    fn point(&self, from: &Receiver) -> Option<Vec3A> {
+    fn point(&self) -> Option<Vec3A> {
         match &self.at {
-            Target::Solid { light, .. } if light.distance.is_finite() => {
-                Some(from.position + light.distance * light.direction)
+            Target::Solid { light } if light.distance.is_finite() => {
+                Some(self.from.position + light.distance * light.direction)
             }
             Target::Solid { .. } => None,
             Target::Volume { point } => Some(*point),
         }
     }
 
-    fn ray(&self, from: &Receiver) -> Ray {
-        Ray::new(from.position, self.direction)
+    fn ray(&self) -> Ray {
+        Ray::new(self.from.position, self.direction)
     }
 
     /// The radiance that comes from there over the density of looking there, which is `pdf`, and
@@ -110,18 +134,17 @@ impl Aim {
         &self,
         scene: &Scene,
         gatherer: &Gatherer,
-        from: &Receiver,
         pdf: f32,
         rng: &mut PathRng,
     ) -> (Rgb, u32) {
-        let ray = self.ray(from);
+        let ray = self.ray();
         match &self.at {
-            Target::Solid { light, .. } => {
+            Target::Solid { light } => {
                 let (radiance, collisions) = radiance_of_solid(scene, &ray, light, rng);
                 (radiance / pdf, collisions)
             }
             Target::Volume { point } if looks_at_points(scene) => {
-                emission_at_point(scene, &ray, (*point - ray.origin).length(), from, rng)
+                self.emission_at_point(scene, (*point - ray.origin).length(), rng)
             }
             Target::Volume { .. } => {
                 let end = surface::intersect(&scene.surfaces, &ray);
@@ -130,6 +153,31 @@ impl Aim {
                 (glow.emission / pdf, glow.collisions)
             }
         }
+    }
+
+    /// The emission at one point of the ray through the medium before it, over the density with
+    /// which looks at volumes end there (Villemin and Hery 2013): Σ q_v p_v over volume, times the
+    /// squared distance.
+    fn emission_at_point(&self, scene: &Scene, distance: f32, rng: &mut PathRng) -> (Rgb, u32) {
+        let ray = self.ray();
+        if occluded(&scene.surfaces, &ray, distance) {
+            return (Rgb::ZERO, 0);
+        }
+        let point = ray.at(distance);
+        let mut pdf_volume = 0.0;
+        scene.world.emissive_along(&ray, |instance, _| {
+            let q = scene.lights.probability_of_volume(instance, self.from, self.choice);
+            let volume = &scene.world.instances()[instance as usize];
+            pdf_volume += q * volume.emission_pdf_at(point);
+        });
+        let emission = scene.world.emission_at(point, ray.direction);
+        if pdf_volume <= 0.0 || emission == Rgb::ZERO {
+            return (Rgb::ZERO, 0);
+        }
+        let medium = scene.world.along(ray, distance);
+        let estimator = scene.strategy.advanced.transmittance;
+        let (transmittance, collisions) = shadow::transmittance(medium, estimator, rng);
+        (emission * transmittance / (pdf_volume * distance * distance), collisions)
     }
 }
 
@@ -149,41 +197,63 @@ pub fn sample_lights(
     scene: &Scene,
     gatherer: &Gatherer,
     vertex: &Vertex,
+    choice: &Choice,
     rng: &mut PathRng,
 ) -> Look {
     let from = vertex.receiver();
-    let Some(aim) = Aim::new(scene, &from, rng) else { return Look::default() };
-    let unseen = Look { point: aim.point(&from), ..Look::default() };
+    let pick = rng.at64(Slot::LightPick);
+    let Some(aim) = Aim::new(scene, &from, choice, pick, rng) else { return Look::default() };
+    let unseen = Look { point: aim.point(), ..Look::default() };
     let (value, vertex_pdf) = vertex.eval(aim.direction);
     if value.max_element() <= 0.0 {
         return unseen;
     }
-    let light_pdf = aim.pdf_solid_angle(scene, &from);
+    let light_pdf = aim.pdf_solid_angle(scene);
     if light_pdf <= 0.0 {
         return unseen;
     }
     let weight = if aim.can_be_met() { mis::balance(light_pdf, vertex_pdf) } else { 1.0 };
-    let (found, collisions) = aim.radiance_over_pdf(scene, gatherer, &from, light_pdf, rng);
+    let (found, collisions) = aim.radiance_over_pdf(scene, gatherer, light_pdf, rng);
     Look { light: value * weight * found, collisions, ..unseen }
 }
 
 /// A point of a light, chosen as a look from a receiver would; `None` where that is nowhere.
-pub fn point_of_light(scene: &Scene, from: &Receiver, rng: &mut PathRng) -> Option<Vec3A> {
-    Aim::new(scene, from, rng)?.point(from)
+pub fn point_of_light(
+    scene: &Scene,
+    from: &Receiver,
+    choice: &Choice,
+    rng: &mut PathRng,
+) -> Option<Vec3A> {
+    let pick = rng.at64(Slot::LightPick);
+    Aim::new(scene, from, choice, pick, rng)?.point()
 }
 
-/// An estimate of the light that arrives at a receiver, by one look at one of the lights: its
-/// direction, and its radiance over the density of the look. Lights are all that is found: not the
-/// environment, not what has scattered.
+/// An estimate of the light that arrives at a receiver, by one look at one of the lights, whatever
+/// probes may say: its direction, and its radiance over the density of the look. Lights are all
+/// that is found: not the environment, not what has scattered.
 pub fn glance(
     scene: &Scene,
     gatherer: &Gatherer,
     from: &Receiver,
     rng: &mut PathRng,
 ) -> Option<(Vec3A, Rgb)> {
-    let aim = Aim::new(scene, from, rng)?;
-    let pdf = aim.pdf_solid_angle(scene, from);
-    (pdf > 0.0).then(|| (aim.direction, aim.radiance_over_pdf(scene, gatherer, from, pdf, rng).0))
+    let choice = choice(&scene.strategy);
+    let pick = rng.at64(Slot::LightPick);
+    let aim = Aim::new(scene, from, &choice, pick, rng)?;
+    let pdf = aim.pdf_solid_angle(scene);
+    (pdf > 0.0).then(|| (aim.direction, aim.radiance_over_pdf(scene, gatherer, pdf, rng).0))
+}
+
+/// How much of the light that `pick`, in [0, 1), chooses by the hierarchy gets to a receiver: the
+/// transmittance from a point of it.
+pub fn glimpse(scene: &Scene, from: &Receiver, pick: f64, rng: &mut PathRng) -> Option<Glimpse> {
+    let choice = Choice { volumes: scene.strategy.nee, by: By::Hierarchy };
+    let aim = Aim::new(scene, from, &choice, pick, rng)?;
+    let (light, probability) = aim.light;
+    let distance = aim.point().map_or(f32::INFINITY, |point| point.distance(from.position));
+    let seen = mean(transmittance_to(scene, &aim.ray(), distance, rng).0);
+    let guess = scene.lights.irradiance(light, from) / probability;
+    Some(Glimpse { light, seen, guess })
 }
 
 /// What a light with a place of its own sends along `ray`.
@@ -193,13 +263,17 @@ fn radiance_of_solid(
     light: &LightSample,
     rng: &mut PathRng,
 ) -> (Rgb, u32) {
-    if occluded(&scene.surfaces, ray, SHORT_OF_LIGHT * light.distance) {
+    let (transmittance, collisions) = transmittance_to(scene, ray, light.distance, rng);
+    (light.radiance * transmittance, collisions)
+}
+
+/// An estimate of the transmittance to a light at a distance; 0 behind surfaces.
+fn transmittance_to(scene: &Scene, ray: &Ray, distance: f32, rng: &mut PathRng) -> (Rgb, u32) {
+    if occluded(&scene.surfaces, ray, SHORT_OF_LIGHT * distance) {
         return (Rgb::ZERO, 0);
     }
-    let medium = scene.world.along(*ray, light.distance);
     let estimator = scene.strategy.advanced.transmittance;
-    let (transmittance, collisions) = shadow::transmittance(medium, estimator, rng);
-    (light.radiance * transmittance, collisions)
+    shadow::transmittance(scene.world.along(*ray, distance), estimator, rng)
 }
 
 /// Whether looks at volumes take one point of them. Points are drawn inside of the lights only.
@@ -210,40 +284,8 @@ fn looks_at_points(scene: &Scene) -> bool {
         && !scene.world.glows_beyond_lights()
 }
 
-/// The emission at one point of the ray through the medium before it, over the density with which
-/// looks at volumes end there (Villemin and Hery 2013): Σ q_v p_v over volume, times the squared
-/// distance.
-fn emission_at_point(
-    scene: &Scene,
-    ray: &Ray,
-    distance: f32,
-    from: &Receiver,
-    rng: &mut PathRng,
-) -> (Rgb, u32) {
-    if occluded(&scene.surfaces, ray, distance) {
-        return (Rgb::ZERO, 0);
-    }
-    let point = ray.at(distance);
-    let choice = choice(&scene.strategy);
-    let mut pdf_volume = 0.0;
-    scene.world.emissive_along(ray, |instance, _| {
-        let probability = scene.lights.probability_of_volume(instance, from, choice);
-        let volume = &scene.world.instances()[instance as usize];
-        pdf_volume += probability * volume.emission_pdf_at(point);
-    });
-    let emission = scene.world.emission_at(point, ray.direction);
-    if pdf_volume <= 0.0 || emission == Rgb::ZERO {
-        return (Rgb::ZERO, 0);
-    }
-    let medium = scene.world.along(*ray, distance);
-    let estimator = scene.strategy.advanced.transmittance;
-    let (transmittance, collisions) = shadow::transmittance(medium, estimator, rng);
-    (emission * transmittance / (pdf_volume * distance * distance), collisions)
-}
-
 /// Density over solid angle with which a look at some emissive volume goes along `ray`.
-fn pdf_of_volumes(scene: &Scene, ray: &Ray, from: &Receiver) -> f32 {
-    let choice = choice(&scene.strategy);
+fn pdf_of_volumes(scene: &Scene, ray: &Ray, from: &Receiver, choice: &Choice) -> f32 {
     let mut sum = 0.0;
     scene.world.emissive_along(ray, |instance, pdf| {
         if pdf > 0.0 {
@@ -258,7 +300,8 @@ fn pdf_of_volumes(scene: &Scene, ray: &Ray, from: &Receiver) -> f32 {
 pub fn weight_of_emission(scene: &Scene, ray: &Ray, departure: Option<&Departure>) -> f32 {
     match departure {
         Some(departure) if scene.strategy.nee => {
-            mis::balance(departure.pdf_solid_angle, pdf_of_volumes(scene, ray, &departure.from))
+            let Departure { from, choice, pdf_solid_angle } = departure;
+            mis::balance(*pdf_solid_angle, pdf_of_volumes(scene, ray, from, choice))
         }
         _ => 1.0,
     }
@@ -273,21 +316,19 @@ pub fn at_the_end(
     end: Option<&Intersection>,
     departure: Option<&Departure>,
 ) -> Rgb {
-    let choice = choice(&scene.strategy);
-    let shared = |radiance: Rgb, light_pdf: &dyn Fn(&Receiver) -> f32| match departure {
+    let shared = |radiance: Rgb, light_pdf: &dyn Fn(&Departure) -> f32| match departure {
         None => radiance,
-        Some(Departure { from, pdf_solid_angle }) => {
-            radiance * mis::balance(*pdf_solid_angle, light_pdf(from))
-        }
+        Some(departure) => radiance * mis::balance(departure.pdf_solid_angle, light_pdf(departure)),
     };
     match end {
-        Some(end) if end.surface.emits() => shared(end.surface.emission, &|from| {
+        Some(end) if end.surface.emits() => shared(end.surface.emission, &|departure| {
+            let Departure { from, choice, .. } = departure;
             scene.lights.pdf_of_surface(end.index, from, choice, &end.hit)
         }),
         Some(_) => Rgb::ZERO,
         None => {
-            let from = departure.map(|departure| departure.from);
-            let suns = scene.lights.suns_behind(from, choice, ray.direction);
+            let from = departure.map(|departure| (&departure.from, &departure.choice));
+            let suns = scene.lights.suns_behind(from, ray.direction);
             suns.fold(scene.lights.environment, |sum, (sun, pdf)| {
                 sum + shared(sun.radiance(), &|_| pdf)
             })

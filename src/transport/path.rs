@@ -18,11 +18,12 @@ use super::{
     observer::{Observer, Step},
     probes::Probes,
     scene::Scene,
+    strategy::Strategy,
     tracking::{self, Event, Flight},
     vertex::{Turn, Vertex},
 };
 use crate::{
-    light::Receiver,
+    light::{Choice, Receiver},
     math::{PathRng, Ray, Rgb, mean},
     sampling::{equiangular::Equiangular, halo::Halo},
     surface::{self, Bsdf, Intersection, Material},
@@ -46,10 +47,17 @@ const GUIDED_RAYS: u32 = 4;
 pub struct Aids<'s> {
     /// The emission's own walk.
     pub gatherer: &'s Gatherer,
-    /// What says where scattering pays, if that is asked for.
+    /// What says where scattering pays and which light to look at, as far as that is asked for.
     pub probes: Option<&'s Probes>,
     /// Radiance that the medium scatters into the rays of the camera on average, as the probes think.
     pub mean_light: f32,
+}
+
+impl<'s> Aids<'s> {
+    /// The probes, where they say where scattering pays.
+    fn guides(&self, strategy: &Strategy) -> Option<&'s Probes> {
+        self.probes.filter(|_| strategy.guides())
+    }
 }
 
 /// Follows one path from the camera along `ray`.
@@ -232,7 +240,8 @@ impl Path<'_> {
 
     /// What guides the flight along the present ray.
     fn guide(&mut self, medium: &MediumRay, rng: &mut PathRng) -> Option<Guide> {
-        let probes = self.aids.probes.filter(|_| self.scatters < GUIDED_RAYS)?;
+        let guides = self.aids.guides(&self.scene.strategy);
+        let probes = guides.filter(|_| self.scatters < GUIDED_RAYS)?;
         let advanced = &self.scene.strategy.advanced;
         let (t0, t1) = medium.extent()?;
         let asks = self.scatters == 0 || advanced.guide_all_vertices;
@@ -243,7 +252,8 @@ impl Path<'_> {
         if self.scatters == 0 {
             let middle = distance::middle(&self.ray, t0, t1);
             let from = Receiver { position: middle, normal: None };
-            self.light = direct::point_of_light(self.scene, &from, rng);
+            let choice = direct::choice(&self.scene.strategy);
+            self.light = direct::point_of_light(self.scene, &from, &choice, rng);
         }
         let light = self
             .light
@@ -300,7 +310,8 @@ impl Path<'_> {
             Branch::Guided { first: false } => rng.enter_vertex(u32::MAX),
         }
         observer.step(Step::Vertex { vertex, throughput: self.throughput });
-        let look = direct::sample_lights(self.scene, self.aids.gatherer, vertex, rng);
+        let choice = self.choice(vertex);
+        let look = direct::sample_lights(self.scene, self.aids.gatherer, vertex, &choice, rng);
         self.count(look.collisions);
         let light = self.throughput * look.light;
         observer.step(Step::Light { contribution: light });
@@ -314,14 +325,30 @@ impl Path<'_> {
         self.throughput *= turn.weight;
         self.ray = vertex.ray(turn.direction);
         let (from, pdf_solid_angle) = (vertex.receiver(), turn.pdf_solid_angle);
-        self.departure = Some(Departure { from, pdf_solid_angle });
+        self.departure = Some(Departure { from, choice, pdf_solid_angle });
         self.survives(rng)
+    }
+
+    /// How a vertex chooses the light it looks at: by the probe around it, if there is one.
+    fn choice(&self, vertex: &Vertex) -> Choice {
+        let choice = direct::choice(&self.scene.strategy);
+        let from = vertex.receiver();
+        match self.aids.probes.and_then(|probes| probes.scores(from.position)) {
+            Some(scores) => {
+                self.scene.lights.choice_by(scores, &from, choice.volumes, |direction| {
+                    vertex.rough_value(direction)
+                })
+            }
+            None => choice,
+        }
     }
 
     /// Where the path goes on from a vertex: sometimes towards the glow around a light that the
     /// medium scatters much of.
     fn choose_direction(&self, vertex: &Vertex, rng: &mut PathRng) -> Option<Turn> {
-        let probes = self.aids.probes.filter(|_| self.scene.strategy.advanced.guide_directions);
+        let strategy = &self.scene.strategy;
+        let guides = self.aids.guides(strategy);
+        let probes = guides.filter(|_| strategy.advanced.guide_directions);
         let (Some(probes), Some(point), false) = (probes, self.light, vertex.is_surface()) else {
             return vertex.sample(rng);
         };

@@ -13,6 +13,7 @@ mod halo;
 mod line;
 mod octree;
 mod probe;
+mod scores;
 mod view;
 
 use glam::{UVec2, Vec2, Vec3A};
@@ -21,9 +22,10 @@ use rayon::prelude::*;
 use super::{
     emission::Gatherer,
     scene::Scene,
-    strategy::{Advanced, Distance, Strategy},
+    strategy::{Advanced, LightSelection, Strategy},
 };
 use crate::{
+    light::Scores,
     math::{Aabb, PathRng, Ray, mean},
     surface,
     volume::{medium::Segment, world::MediumRay},
@@ -54,6 +56,8 @@ pub struct Probes {
     octree: Octree,
     /// By node; those of inner nodes are what their leaves began as.
     probes: Vec<Probe>,
+    /// Of the lights, by node, at leaves from where any is seen; empty if they are not asked for.
+    scores: Vec<Option<Scores>>,
     /// Radiance scattered outside of the octree per unit of μ_s.
     outside: f32,
     /// Mean cosine of what scatters most.
@@ -71,25 +75,39 @@ impl Probes {
 
     /// The same, but given up, with `None`, once `stop` says so.
     pub fn unless(scene: &Scene, stop: &(dyn Fn() -> bool + Sync)) -> Option<Self> {
-        let Advanced { probe_count, .. } = Self::recipe(&scene.strategy)?.advanced;
+        let recipe = Self::recipe(&scene.strategy)?;
+        let scores_lights = recipe.advanced.light_selection == LightSelection::Probes
+            && scene.lights.len(recipe.nee) > 1;
+        if !scene.strategy.guides() && !scores_lights {
+            return None;
+        }
         let (bounds, scattering) = support(scene)?;
         let octree = Octree::new(&bounds);
         let cube = octree.bounds();
         let builder = Builder { scene, gatherer: Gatherer::at_a_glance(), scattering };
         let first = builder.probe(0, &cube);
         let scattered = halo::scattered_share(scene);
-        let mut probes =
-            Self { octree, probes: vec![first], outside: 0.0, mean_cosine: 0.0, scattered };
-        probes.refine(&builder, probe_count, stop)?;
+        let mut probes = Self {
+            octree,
+            probes: vec![first],
+            scores: Vec::new(),
+            outside: 0.0,
+            mean_cosine: 0.0,
+            scattered,
+        };
+        probes.refine(&builder, recipe.advanced.probe_count, stop)?;
         probes.outside = OUTSIDE * probes.mean_radiance();
         probes.mean_cosine = probes.weighted_cosine();
+        if scores_lights {
+            probes.score_lights(&builder, stop)?;
+        }
         Some(probes)
     }
 
     /// What of a strategy decides the probes, all else put to its default: strategies that agree in
     /// it have the same. `None` where it asks for none.
     pub fn recipe(strategy: &Strategy) -> Option<Strategy> {
-        let asks = strategy.probe_mis && strategy.advanced.distance != Distance::Null;
+        let asks = strategy.guides() || strategy.advanced.light_selection == LightSelection::Probes;
         let plain = Strategy::default();
         let aside = plain.advanced;
         asks.then_some(Strategy {
@@ -153,6 +171,33 @@ impl Probes {
             power += sum(&level) - sum(&split);
         }
         Some(())
+    }
+
+    /// Scores the lights for each leaf; `None` when stopped.
+    fn score_lights(
+        &mut self,
+        builder: &Builder<'_>,
+        stop: &(dyn Fn() -> bool + Sync),
+    ) -> Option<()> {
+        let leaves = self.octree.leaves();
+        let scored: Option<Vec<(u32, Option<Scores>)>> = leaves
+            .par_iter()
+            .map(|(node, bounds)| (!stop()).then(|| (*node, builder.scores(*node, bounds))))
+            .collect();
+        let scored = scored?;
+        self.scores = vec![None; self.probes.len()];
+        for (node, scores) in scored {
+            self.scores[node as usize] = scores;
+        }
+        Some(())
+    }
+
+    /// Those of the lights around a point, if lights are chosen by them there.
+    pub fn scores(&self, point: Vec3A) -> Option<&Scores> {
+        if self.scores.is_empty() {
+            return None;
+        }
+        self.scores.get(self.octree.leaf_at(point)? as usize)?.as_ref()
     }
 
     /// The children of a leaf.
@@ -284,6 +329,11 @@ impl Builder<'_> {
     fn probe(&self, node: u32, bounds: &Aabb) -> Probe {
         let mut rng = PathRng::new(SEED, UVec2::new(node, 0), 0);
         Probe::new(self.scene, &self.gatherer, bounds, &mut rng)
+    }
+
+    /// Those of the lights around a leaf.
+    fn scores(&self, node: u32, bounds: &Aabb) -> Option<Scores> {
+        scores::scores(self.scene, node, bounds)
     }
 
     fn may_scatter(&self, bounds: &Aabb) -> bool {

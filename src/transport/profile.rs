@@ -4,6 +4,7 @@
 use glam::UVec2;
 
 use super::{
+    direct,
     distance::{self, Sharing},
     probes::{Line, Probes},
     scene::Scene,
@@ -88,7 +89,8 @@ impl Profile {
             .collect();
         let gather = Gather::of(&scene.strategy);
         let optical_depth = read_medium(medium.clone(), gather, &mut rows, step);
-        let guided = probes.is_some_and(|probes| {
+        let guides = probes.filter(|_| scene.strategy.guides());
+        let guided = guides.is_some_and(|probes| {
             let line = probes.along(medium, ray);
             let mean_light = probes.mean_light(scene, size);
             let sharing = Sharing::new(&scene.strategy, line.as_ref(), mean_light);
@@ -200,9 +202,10 @@ fn points_of_light(
     [t0, t1]: [f32; 2],
 ) -> Vec<Option<Equiangular>> {
     let from = Receiver { position: distance::middle(ray, t0, t1), normal: None };
+    let choice = direct::choice(&scene.strategy);
     let look = |sample| {
         let mut rng = PathRng::new(SEED, UVec2::ZERO, sample);
-        let point = super::direct::point_of_light(scene, &from, &mut rng)?;
+        let point = direct::point_of_light(scene, &from, &choice, &mut rng)?;
         Equiangular::new(ray, point, probes.mean_cosine(), t0, t1)
     };
     (0..LOOKS).map(look).collect()

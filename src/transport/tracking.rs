@@ -558,6 +558,8 @@ mod tests {
 
     /// Every tentative collision of a walk that shares another's random numbers, and what there is.
     struct Recorder {
+        /// None where emission is no matter of the walk.
+        majorant: Option<EmissionMajorant>,
         until: f32,
         /// Whether the walk drew a number at each collision.
         draws: bool,
@@ -571,7 +573,7 @@ mod tests {
             self.until
         }
         fn rate(&mut self, _: &MediumRay, segment: &Segment) -> f32 {
-            segment.majorant
+            self.majorant.map_or(segment.majorant, |majorant| majorant.rate(segment))
         }
         fn cross(&mut self, _: &MediumRay, _: &Segment, _: &mut PathRng) -> bool {
             false
@@ -589,7 +591,7 @@ mod tests {
     }
 
     /// Smoke with holes, as a world.
-    fn smoke(density: f32) -> World {
+    fn smoke(density: Rgb, albedo: Rgb, emission: Emission) -> World {
         let substance = Substance {
             density: ScalarField::Noise(Noise {
                 frequency: 2.0,
@@ -597,24 +599,22 @@ mod tests {
                 contrast: 2.0,
                 seed: 0,
             }),
-            density_scale: Rgb::splat(density),
-            albedo: RgbField::Constant(Rgb::splat(0.8)),
+            density_scale: density,
+            albedo: RgbField::Constant(albedo),
             g: 0.5,
-            emission: Emission::None,
+            emission,
         };
         let volume =
             Volume::varying(Aabb::centered(Vec3A::ONE), substance, Vec3A::splat(0.25), None);
         World::new(vec![Instance::new(Arc::new(volume), Affine3A::IDENTITY)])
     }
 
-    /// What the walk says of its density, by chance or filled, is the product of its own
-    /// probabilities, Π (μ_n/μ̄) · μ_t, at the collisions it had, for thousands of paths.
-    #[test]
-    fn the_density_of_a_path_is_the_product_along_it() {
-        let strategy = Preset::Full.strategy();
+    /// Paths with an event, by chance and filled, whose density was checked.
+    fn check_densities(world: &World, strategy: &Strategy, throughput: Rgb) -> [u32; 2] {
+        let gather = Gather::of(strategy);
+        let boosted = gather == Gather::EveryCollision;
         let mut checked = [0, 0];
-        for (density, i) in [1.0, 4.0, 16.0].iter().flat_map(|d| (0..2000).map(move |i| (*d, i))) {
-            let world = smoke(density);
+        for i in 0..2000 {
             let mut rng = PathRng::new(i, UVec2::ZERO, 0);
             let target = 0.6 * Vec3A::new(rng.uniform(), rng.uniform(), rng.uniform());
             let origin = Vec3A::new(-3.0, 0.2, 0.1);
@@ -624,25 +624,70 @@ mod tests {
             let until = if filled { 2.0 + 2.0 * rng.uniform() } else { f32::INFINITY };
             let mut again = rng.clone();
             let flight = if filled {
-                fill(along(), &strategy, Rgb::ONE, until, &mut rng)
+                fill(along(), strategy, throughput, until, &mut rng)
             } else {
                 let first = rng.exponential();
-                scatter(along(), &strategy, Rgb::ONE, first, &mut rng)
+                scatter(along(), strategy, throughput, first, &mut rng)
             };
             let Event::Scattered { t, .. } = flight.event else { continue };
-            let mut recorder = Recorder { until, draws: !filled, event: t, collisions: vec![] };
+            let majorant = boosted.then(|| EmissionMajorant::of(strategy));
+            let mut recorder =
+                Recorder { majorant, until, draws: !filled, event: t, collisions: vec![] };
             let first = again.exponential();
             track(along(), first, &mut again, &mut recorder);
-            let mu_t = |t: f32| world.matter_at(ray.at(t)).map_or(0.0, |m| m.mu_t.x);
+            let matter = |t: f32| {
+                let at = world.matter_at(ray.at(t));
+                at.map_or([Rgb::ZERO; 2], |m| [m.mu_t, m.mu_s])
+            };
             let (last, before) = recorder.collisions.split_last().unwrap();
             assert_eq!(last.0, t);
-            let product = before.iter().fold(mu_t(t), |p, &(t, rate)| p * (1.0 - mu_t(t) / rate));
-            let error = (flight.pdf_null - product).abs();
-            assert!(error < 2e-3 * product + 1e-6, "{}: {product}, said {}", t, flight.pdf_null);
-            assert!((flight.weight.x - 0.8).abs() < 1e-5);
+            let nulls =
+                before.iter().fold(Rgb::ONE, |p, &(t, rate)| p * (1.0 - matter(t)[0] / rate));
+            let [mu_t, mu_s] = matter(t);
+            let drawn = if gather == Gather::Absorption { mu_s } else { mu_t };
+            let density = mean(throughput * nulls * drawn) / mean(throughput);
+            let error = (flight.pdf_null - density).abs();
+            assert!(error < 3e-3 * density + 1e-6, "{t}: {density}, said {}", flight.pdf_null);
+            let weight = nulls * mu_s / density;
+            let error = (flight.weight - weight).abs().max_element();
+            assert!(error < 1e-2 * weight.max_element() || density < 1e-5, "{t}: {weight}");
             checked[usize::from(filled)] += 1;
         }
-        assert!(checked[0] > 1000 && checked[1] > 1000, "{checked:?}");
+        checked
+    }
+
+    /// What the walk says of its density, by chance or filled, is the product along it, evaluated
+    /// directly: per channel Π (μ_n/μ̄) · μ, and over the channels the mean of it by the color the
+    /// path came with. For gray and colored smoke, whatever gathers emission, for thousands of
+    /// paths.
+    #[test]
+    fn the_density_of_a_path_is_the_product_along_it() {
+        let full = Preset::Full.strategy();
+        let decoupled = Strategy { emission_ratio_tracking: false, ..full };
+        let unboosted = Strategy { majorant_boost: false, ..decoupled };
+        let baseline = Preset::Baseline.strategy();
+        let glow = || Emission::Source { le: Rgb::new(2.0, 1.0, 0.5) };
+        let none = || Emission::None;
+        let mut checked = [0, 0];
+        for density in [1.0, 4.0, 16.0] {
+            for color in [Rgb::ONE, Rgb::new(1.0, 0.5, 0.1)] {
+                let smoke = |emission| smoke(density * color, 0.8 * color.powf(0.5), emission);
+                for (strategy, emission) in [
+                    (full, none()),
+                    (full, glow()),
+                    (decoupled, glow()),
+                    (unboosted, glow()),
+                    (baseline, none()),
+                ] {
+                    let world = smoke(emission);
+                    for throughput in [Rgb::ONE, Rgb::new(0.1, 0.5, 2.0)] {
+                        let found = check_densities(&world, &strategy, throughput);
+                        (0..2).for_each(|i| checked[i] += found[i]);
+                    }
+                }
+            }
+        }
+        assert!(checked[0] > 20_000 && checked[1] > 20_000, "{checked:?}");
     }
 
     /// A draw of zero distance collides in however thin a medium.

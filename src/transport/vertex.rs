@@ -1,15 +1,20 @@
 //! A vertex of a path, on a surface or in a volume, behind one face: a value and a density for a
 //! direction, and a sample of it.
 
+use std::f32::consts::PI;
+
 use glam::{Vec2, Vec3A};
 
 use crate::{
     light::Receiver,
-    math::{PathRng, Ray, Rgb, Slot},
+    math::{PathRng, Ray, Rgb, Slot, mean},
     sampling::halo::Halo,
     surface::{Bsdf, Hit},
     volume::phase::PhaseMix,
 };
+
+/// Share of a guess at a vertex's value that is the same for all directions.
+const SHARE_OF_EVEN: f32 = 0.2;
 
 /// A place where a path turns.
 #[derive(Clone, Debug)]
@@ -59,6 +64,13 @@ impl Vertex {
             Kind::Volume { phase, forward } => phase.eval(*forward, direction),
             Kind::Surface { bsdf, .. } => bsdf.eval(direction),
         }
+    }
+
+    /// A guess at how much of the light from around the unit `direction` goes on along the path;
+    /// above zero, since a light is more than its middle.
+    pub fn rough_value(&self, direction: Vec3A) -> f32 {
+        const EVEN: f32 = SHARE_OF_EVEN / (4.0 * PI);
+        EVEN + (1.0 - SHARE_OF_EVEN) * mean(self.eval(direction).0)
     }
 
     /// Draws the direction the path goes on along; `None` where it ends.

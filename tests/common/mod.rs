@@ -99,7 +99,7 @@ pub fn boost_modes() -> [Strategy; 3] {
 
 /// The finer keys in eight rows, an orthogonal array: every two keys meet in every pair of their
 /// values, and so do the last three, all three of them. The three estimators of transmittance meet
-/// most of them.
+/// most of them, and two ways to choose lights share the place of one.
 pub fn finer() -> [Advanced; 8] {
     use TransmittanceEstimator::{Marching, Ratio, Residual};
     let modes = [BoostMode::Stratified, BoostMode::Optimal, BoostMode::Clamped, BoostMode::Literal];
@@ -109,10 +109,10 @@ pub fn finer() -> [Advanced; 8] {
             boost_mode: modes[row % 4],
             boost_amount: if c { 64.0 } else { 2.0 },
             nee_evaluation: if a ^ c { NeeEvaluation::Point } else { NeeEvaluation::Line },
-            light_selection: if b ^ c {
-                LightSelection::Uniform
-            } else {
-                LightSelection::Hierarchy
+            light_selection: match (b ^ c, a) {
+                (false, _) => LightSelection::Hierarchy,
+                (true, false) => LightSelection::Uniform,
+                (true, true) => LightSelection::Probes,
             },
             low_discrepancy: a ^ b ^ c,
             distance: if a ^ b { Distance::Probes } else { Distance::Mis },
@@ -128,6 +128,31 @@ pub fn finer() -> [Advanced; 8] {
             ..Advanced::default()
         }
     })
+}
+
+/// Every way to choose a distance with every other guide on and off.
+pub fn every_guide() -> Vec<Strategy> {
+    let mut all = Vec::new();
+    for distance in [Distance::Mis, Distance::Probes] {
+        for bits in 0..8_u32 {
+            let advanced = Advanced {
+                distance,
+                equiangular: bits & 1 != 0,
+                guide_directions: bits & 2 != 0,
+                guide_all_vertices: bits & 4 != 0,
+                ..Advanced::default()
+            };
+            all.push(Strategy { advanced, ..Strategy::default() });
+        }
+    }
+    all
+}
+
+/// Every way to choose a distance with all other guides on and with none.
+pub fn few_guides() -> Vec<Strategy> {
+    let all = |a: &Advanced| a.equiangular && a.guide_directions && a.guide_all_vertices;
+    let none = |a: &Advanced| !a.equiangular && !a.guide_directions && !a.guide_all_vertices;
+    every_guide().into_iter().filter(|s| all(&s.advanced) || none(&s.advanced)).collect()
 }
 
 /// Every combination of the toggles with each row of [`finer`], those that are the same by
@@ -219,7 +244,24 @@ const SIDE: u32 = 64;
 /// accumulators tell it, which holds for samples that depend on each other too.
 pub fn measure_with(scene: &Scene, paths: u32, of: impl Fn(&PathSample) -> Rgb + Sync) -> Estimate {
     let frame = Frame::new(Arc::new(scene.clone()), UVec2::splat(SIDE), seed());
+    measure_in_turn(&[frame], paths, of)
+}
+
+/// The mean radiance over the whole film where one scene takes over from the other, each with as
+/// many of the samples.
+pub fn measure_one_after_another(scenes: &[Scene], paths: u32) -> Estimate {
+    let frame = |scene: &Scene| Frame::new(Arc::new(scene.clone()), UVec2::splat(SIDE), seed());
+    let frames: Vec<Frame> = scenes.iter().map(frame).collect();
+    measure_in_turn(&frames, paths, PathSample::beauty)
+}
+
+fn measure_in_turn(
+    frames: &[Frame],
+    paths: u32,
+    of: impl Fn(&PathSample) -> Rgb + Sync,
+) -> Estimate {
     let samples = paths.div_ceil(SIDE * SIDE).max(2);
+    let frame = |s: u32| &frames[(s as usize * frames.len()) / samples as usize];
     let rows: Vec<Estimate> = (0..SIDE)
         .into_par_iter()
         .map(|y| {
@@ -227,7 +269,7 @@ pub fn measure_with(scene: &Scene, paths: u32, of: impl Fn(&PathSample) -> Rgb +
             let mut sums = Estimate::default();
             for x in 0..SIDE {
                 for s in 0..samples {
-                    let direct = of(&frame.sample(UVec2::new(x, y), s));
+                    let direct = of(&frame(s).sample(UVec2::new(x, y), s));
                     film.add(UVec2::new(x, 0), &PathSample { direct, ..PathSample::default() });
                 }
                 let pixel = PixelEstimate::of(&film, UVec2::new(x, 0)).unwrap();

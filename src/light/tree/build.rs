@@ -42,7 +42,13 @@ pub(super) fn build(emitters: &[Emitter]) -> LightTree {
         .filter(|(_, emitter)| intensity(emitter) > 0.0)
         .filter_map(|(index, emitter)| item(index as u32, emitter, brightest))
         .collect();
-    let mut tree = LightTree { nodes: Vec::new(), trails: vec![None; emitters.len()], brightest };
+    let count = emitters.len();
+    let mut tree = LightTree {
+        nodes: Vec::new(),
+        trails: vec![None; count],
+        leaves: vec![0; count],
+        brightest,
+    };
     if !items.is_empty() {
         tree.nodes.reserve(2 * items.len());
         tree.nodes.push(node(&items, Kind::Leaf(0)));
@@ -77,6 +83,7 @@ fn split(tree: &mut LightTree, at: usize, items: &mut [Item], depth: u32, trail:
     if let [only] = items {
         tree.nodes[at].kind = Kind::Leaf(only.index);
         tree.trails[only.index as usize] = Some(trail);
+        tree.leaves[only.index as usize] = at as u32;
         return;
     }
     let middle = match cheapest_split(items, &tree.nodes[at].bounds) {

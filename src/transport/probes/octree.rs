@@ -58,13 +58,41 @@ impl Octree {
         self.children.get(node as usize).copied().filter(|&child| child != 0)
     }
 
+    /// The leaf around a point, none outside of the cube.
+    pub(super) fn leaf_at(&self, point: Vec3A) -> Option<u32> {
+        self.find(point).map(|(node, ..)| node)
+    }
+
+    /// Every leaf with its box.
+    pub(super) fn leaves(&self) -> Vec<(u32, Aabb)> {
+        let mut leaves = Vec::new();
+        let mut open = vec![(0, self.bounds())];
+        while let Some((node, bounds)) = open.pop() {
+            match self.children[node as usize] {
+                0 => leaves.push((node, bounds)),
+                first => open.extend((0..8).map(|i| (first + i, child_of(&bounds, i)))),
+            }
+        }
+        leaves
+    }
+
     /// The leaf of `ray` at parameter `t`, and where it leaves it.
     pub(super) fn locate(&self, ray: &Ray, t: f32) -> Place {
-        const CELLS: f32 = (1 << DEEPEST) as f32;
-        let scaled = (ray.at(t) - self.low) * (CELLS / self.edge);
-        let outside = scaled.cmplt(Vec3A::ZERO).any() || !scaled.cmplt(Vec3A::splat(CELLS)).all();
-        if outside {
+        let Some((node, place, depth)) = self.find(ray.at(t)) else {
             return Place { leaf: None, t_end: self.entry(ray, t) };
+        };
+        let edge = self.edge / (1u32 << depth) as f32;
+        let low = self.low + (place >> (DEEPEST - depth)).as_vec3a() * edge;
+        Place { leaf: Some(node), t_end: exit(ray, t, low, edge) }
+    }
+
+    /// The leaf around a point, the point in finest cells, and the cuts above the leaf.
+    #[inline]
+    fn find(&self, point: Vec3A) -> Option<(u32, UVec3, u32)> {
+        const CELLS: f32 = (1 << DEEPEST) as f32;
+        let scaled = (point - self.low) * (CELLS / self.edge);
+        if scaled.cmplt(Vec3A::ZERO).any() || !scaled.cmplt(Vec3A::splat(CELLS)).all() {
+            return None;
         }
         let place = scaled.as_ivec3().as_uvec3();
         let (mut node, mut depth) = (0, 0);
@@ -73,9 +101,7 @@ impl Octree {
             node = self.children[node as usize] + bits.x + 2 * bits.y + 4 * bits.z;
             depth += 1;
         }
-        let edge = self.edge / (1u32 << depth) as f32;
-        let low = self.low + (place >> (DEEPEST - depth)).as_vec3a() * edge;
-        Place { leaf: Some(node), t_end: exit(ray, t, low, edge) }
+        Some((node, place, depth))
     }
 
     /// Where a ray that is outside of the cube at `t` comes to it.
