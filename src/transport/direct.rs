@@ -10,8 +10,9 @@ use glam::Vec3A;
 
 use super::{
     emission::{Errand, Gatherer},
+    march,
     scene::Scene,
-    strategy::{LightSelection, NeeEvaluation, Strategy},
+    strategy::{Integrator, LightSelection, NeeEvaluation, Strategy},
     tracking,
     vertex::Vertex,
 };
@@ -20,6 +21,7 @@ use crate::{
     math::{PathRng, Ray, Rgb, Slot},
     sampling::mis,
     surface::{self, Intersection, occluded},
+    volume::world::MediumRay,
 };
 
 /// Shadow rays stop short of their light by this share, so that they don't meet the light itself.
@@ -186,7 +188,7 @@ pub fn glance(
     (pdf > 0.0).then(|| (aim.direction, aim.radiance_over_pdf(scene, gatherer, from, pdf, rng).0))
 }
 
-/// What a light with a place of its own sends along `ray`; transmittance is ratio tracked.
+/// What a light with a place of its own sends along `ray`.
 fn radiance_of_solid(
     scene: &Scene,
     ray: &Ray,
@@ -197,8 +199,16 @@ fn radiance_of_solid(
         return (Rgb::ZERO, 0);
     }
     let medium = scene.world.along(*ray, light.distance);
-    let (transmittance, collisions) = tracking::transmittance(medium, rng);
+    let (transmittance, collisions) = transmittance(scene, medium, rng);
     (light.radiance * transmittance, collisions)
+}
+
+/// Transmittance on the way to a light, ratio tracked or marched, and the steps it took.
+fn transmittance(scene: &Scene, medium: MediumRay<'_>, rng: &mut PathRng) -> (Rgb, u32) {
+    match scene.strategy.integrator {
+        Integrator::Path => tracking::transmittance(medium, rng),
+        Integrator::March => march::transmittance(medium, scene.strategy.advanced.march_step, rng),
+    }
 }
 
 /// Whether looks at volumes take one point of them. Points are drawn inside of the lights only.
@@ -235,7 +245,7 @@ fn emission_at_point(
         return (Rgb::ZERO, 0);
     }
     let medium = scene.world.along(*ray, distance);
-    let (transmittance, collisions) = tracking::transmittance(medium, rng);
+    let (transmittance, collisions) = transmittance(scene, medium, rng);
     (emission * transmittance / (pdf_volume * distance * distance), collisions)
 }
 

@@ -20,7 +20,7 @@ use rayon::prelude::*;
 use super::{
     emission::Gatherer,
     scene::Scene,
-    strategy::{Distance, Strategy},
+    strategy::{Distance, Integrator, Strategy},
 };
 use crate::{
     math::{Aabb, PathRng, Ray, mean},
@@ -61,8 +61,8 @@ impl Probes {
     /// The probes for `scene`, if its strategy asks for any and anything scatters. The same scene
     /// always gets the same ones.
     pub fn new(scene: &Scene) -> Option<Self> {
-        let Strategy { probe_mis, advanced, .. } = scene.strategy;
-        if !probe_mis || advanced.distance == Distance::Null {
+        let Strategy { probe_mis, advanced, integrator, .. } = scene.strategy;
+        if !probe_mis || advanced.distance == Distance::Null || integrator == Integrator::March {
             return None;
         }
         let (bounds, scattering) = support(scene)?;

@@ -11,6 +11,7 @@ use crate::app::viewport::Viewport;
 use crate::app::widgets::{count, finite};
 use crate::image::tone::ToneCurve;
 use crate::render::RenderStats;
+use crate::transport::strategy::Strategy;
 
 /// Room that the zoom takes.
 const ZOOM_WIDTH: f32 = 70.0;
@@ -31,7 +32,10 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>, engine: &Engine, viewport: &View
             panel.commands.push(Command::PauseResume);
         }
         match engine.picture() {
-            Some(picture) => progress(ui, &picture.stats, engine),
+            Some(picture) => {
+                bias(ui, &panel.editor.document.settings.strategy);
+                progress(ui, &picture.stats, engine);
+            }
             None => {
                 let opening = engine.opening().is_some() || engine.built().is_some();
                 let text =
@@ -53,6 +57,15 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>, engine: &Engine, viewport: &View
             }
         });
     });
+}
+
+/// A picture that will never be quite right says so.
+fn bias(ui: &mut Ui, strategy: &Strategy) {
+    if strategy.is_biased() {
+        let help = "Ray marching is on (Strategy, Advanced): this picture is not quite right, and \
+                    more samples will not mend that.";
+        ui.label(RichText::new("biased").color(color::WARNING)).on_hover_text(help);
+    }
 }
 
 fn progress(ui: &mut Ui, stats: &RenderStats, engine: &Engine) {
