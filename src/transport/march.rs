@@ -151,6 +151,8 @@ pub(super) struct Table {
     rows: Vec<Row>,
     /// The path's throughput over its mean: which channels matter.
     color: Rgb,
+    /// T̂ of the whole ray.
+    transmittance: Rgb,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -225,16 +227,17 @@ impl Table {
             }
             way.pass(step, &c, rng)
         });
+        self.transmittance = way.transmittance;
         way.glow(steps)
     }
 
-    /// Draws how the flight along the ray goes on: by scattering, or to its end where `beyond`, the
-    /// transmittance to what reflects there, is not zero. `medium` is the one the table was filled
-    /// from.
+    /// Draws how the flight along the ray goes on: by scattering, or to its end if it `goes_on`
+    /// there. `medium` is the one the table was filled from.
     ///
     /// Unbiased given the table: with f_c what a place brings to channel c, its density is
     /// mean (color · f) / Σ, its weight f_c over that.
-    pub(super) fn draw(&self, medium: MediumRay<'_>, beyond: Rgb, rng: &mut PathRng) -> Flight {
+    pub(super) fn draw(&self, medium: MediumRay<'_>, goes_on: bool, rng: &mut PathRng) -> Flight {
+        let beyond = if goes_on { self.transmittance } else { Rgb::ZERO };
         let scattered = self.rows.last().map_or(0.0, |row| row.sum);
         let reached = mean(self.color * beyond);
         let total = scattered + reached;

@@ -121,11 +121,7 @@ impl Path<'_> {
             return false;
         }
         let flight = match marched {
-            Some(glow) => {
-                let reflects = end.as_ref().is_some_and(|end| end.surface.reflects());
-                let beyond = if reflects { glow.transmittance } else { Rgb::ZERO };
-                self.table.draw(medium, beyond, rng)
-            }
+            Some(_) => self.table.draw(medium, goes_on(end.as_ref()), rng),
             None => self.fly(medium, end.as_ref(), rng),
         };
         if flight.emission != Rgb::ZERO {
@@ -190,8 +186,7 @@ impl Path<'_> {
     /// is gained by getting to their end.
     fn fly(&mut self, medium: MediumRay, end: Option<&Intersection>, rng: &mut PathRng) -> Flight {
         let strategy = &self.scene.strategy;
-        let needs_end =
-            !strategy.emission_ratio_tracking || end.is_some_and(|end| end.surface.reflects());
+        let needs_end = !strategy.emission_ratio_tracking || goes_on(end);
         let is_first = self.scatters == 0;
         let guide = if is_first || !needs_end { self.guide(&medium, rng) } else { None };
         let flight = match guide {
@@ -402,6 +397,11 @@ impl Path<'_> {
         let smooth = transmittance.filter(|_| end.is_none()).map(|t| 1.0 - mean(t));
         (self.sample.alpha, self.sample.depth) = (smooth.unwrap_or(opacity), depth);
     }
+}
+
+/// Whether a path goes on from the end of its ray.
+fn goes_on(end: Option<&Intersection>) -> bool {
+    end.is_some_and(|end| end.surface.reflects())
 }
 
 /// The vertex on the surface at the end of `ray`; `None` on black ones.
