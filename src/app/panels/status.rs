@@ -31,11 +31,9 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>, engine: &Engine, viewport: &View
         if ui.add(button).on_hover_text(format!("{help}  [{key}]")).clicked() {
             panel.commands.push(Command::PauseResume);
         }
+        bias(ui, &panel.editor.document.settings.strategy);
         match engine.picture() {
-            Some(picture) => {
-                bias(ui, &panel.editor.document.settings.strategy);
-                progress(ui, &picture.stats, engine);
-            }
+            Some(picture) => progress(ui, &picture.stats, engine),
             None => {
                 let opening = engine.opening().is_some() || engine.built().is_some();
                 let text =
