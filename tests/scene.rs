@@ -337,7 +337,7 @@ fn faulty_overrides_are_refused_by_name() {
         ("volume=3", &["--set: volume:", "[[volume]]"]),
         ("volume.0=3", &["--set: volume.0:", "expected table"]),
         ("strategy.preset=best", &["--set: strategy.preset:", "\"best\""]),
-        ("strategy.advanced.scatter_probability=1", &["scatter_probability:", "not there yet"]),
+        ("strategy.advanced.probe_learning=true", &["probe_learning:", "not there yet"]),
         ("a.b.c=1", &["--set: a:", "unknown key"]),
         ("=1", &["--set:", "unknown key"]),
     ] {

@@ -11,7 +11,7 @@
 
 use super::{
     probes::Line,
-    strategy::{Distance, Strategy},
+    strategy::{Distance, ScatterProbability, Strategy},
     tracking::{self, Event, Flight},
 };
 use crate::{
@@ -22,9 +22,12 @@ use crate::{
 
 /// Probability of null-collision tracking where a flight is either that or guided. It bounds the
 /// weights by its inverse.
-const NULL_SHARE: f32 = 0.3;
-/// Least probability of a guided flight beside the other one.
-const LEAST_BRANCHING: f32 = 0.1;
+const NULL_SHARE: f32 = 0.6;
+/// Fewest and most guided flights of a ray from the camera, on average.
+const LEAST_FLIGHTS: f32 = 0.1;
+const MOST_FLIGHTS: f32 = 16.0;
+/// Relative variance of what an unguided flight finds from which on guided ones pay.
+const MUCH_MISSED: f32 = 1.0;
 
 /// p_select: the densities that guide along one ray, each with the same share.
 #[derive(Debug)]
@@ -60,10 +63,21 @@ impl Guide {
         }
     }
 
-    /// How often a guided flight pays beside an unguided one: the more of the ray's light the
-    /// latter leaves behind without scattering, the more.
-    fn branching(&self) -> f32 {
-        self.line.as_ref().map_or(1.0, Line::transmittance).max(LEAST_BRANCHING)
+    /// How many guided flights a ray from the camera gets on average. The noise of a pixel is about
+    /// in proportion to its light, so that the picture's falls fastest for the same effort where
+    /// each gets flights in that proportion; fewer where an unguided one finds all the light as
+    /// well, as in a cloud; and some at least.
+    fn flights(&self, strategy: &Strategy, mean_light: f32) -> f32 {
+        let Some(line) = &self.line else { return 1.0 };
+        let least = match strategy.advanced.distance {
+            Distance::Probes => 1.0,
+            _ => line.transmittance().max(LEAST_FLIGHTS),
+        };
+        let wanted = line.light() / mean_light * (line.missed() / MUCH_MISSED).min(1.0);
+        match strategy.advanced.scatter_probability {
+            ScatterProbability::Light if wanted.is_finite() => wanted.clamp(least, MOST_FLIGHTS),
+            _ => least,
+        }
     }
 }
 
@@ -97,9 +111,6 @@ pub(super) fn null_or_guided(
     };
     flight.emission /= NULL_SHARE;
     flight.weight *= match flight.event {
-        Event::Scattered { t, .. } if strategy.advanced.distance == Distance::Probes => {
-            alone(flight.pdf_null, guide.pdf(t), is_null) / (1.0 - NULL_SHARE)
-        }
         Event::Scattered { t, .. } => {
             mis::mixture([NULL_SHARE, 1.0 - NULL_SHARE], [flight.pdf_null, guide.pdf(t)])
         }
@@ -108,37 +119,81 @@ pub(super) fn null_or_guided(
     flight
 }
 
-/// Two flights, one unguided, the other guided and by chance left out where it brings little. They
-/// share what both can bring, scattering, and the first brings all else.
-pub(super) fn null_and_guided(
-    medium: MediumRay,
-    strategy: &Strategy,
-    guide: &Guide,
-    throughput: Rgb,
-    rng: &mut PathRng,
-) -> (Flight, Option<Flight>) {
-    let share = match strategy.advanced.distance {
-        Distance::Probes => 1.0,
-        _ => guide.branching(),
-    };
-    let weigh = |flight: &mut Flight, is_null: bool| {
+/// The flights along a ray from the camera: one that is unguided, and guided ones, more of them
+/// where more light is scattered into the ray. They share what both kinds can bring, scattering;
+/// the unguided one brings all else.
+///
+/// With n guided flights on average the guided density counts n times in the balance heuristic;
+/// they are drawn from one number, evenly apart.
+pub(super) struct Fan<'g> {
+    guide: &'g Guide,
+    /// Guided flights on average.
+    mean: f32,
+    /// Guided flights.
+    count: u32,
+    /// The number that places them.
+    offset: f32,
+}
+
+impl<'g> Fan<'g> {
+    /// `mean_light` is the radiance scattered into rays from the camera on average.
+    pub(super) fn new(
+        strategy: &Strategy,
+        guide: &'g Guide,
+        mean_light: f32,
+        rng: &mut PathRng,
+    ) -> Self {
+        let mean = guide.flights(strategy, mean_light);
+        let whole = mean.floor();
+        let more = mean > whole && rng.uniform() < mean - whole;
+        let count = whole as u32 + u32::from(more);
+        let offset = if count > 0 { rng.at(Slot::GuidedDistance) } else { 0.0 };
+        Self { guide, mean, count, offset }
+    }
+
+    /// Where the guided flights end.
+    pub(super) fn distances(&self) -> impl Iterator<Item = f32> + use<'g> {
+        let (guide, count, offset) = (self.guide, self.count, self.offset);
+        (0..count).map(move |index| {
+            let u = (index as f32 + offset) / count as f32;
+            guide.sample(u.min(1.0 - f32::EPSILON))
+        })
+    }
+
+    /// The guided flight to parameter `t`.
+    pub(super) fn guided(
+        &self,
+        medium: MediumRay,
+        strategy: &Strategy,
+        t: f32,
+        throughput: Rgb,
+        rng: &mut PathRng,
+    ) -> Flight {
+        let flight = tracking::fill(medium, strategy, throughput, t, rng);
+        self.weighed(flight, strategy, false)
+    }
+
+    /// The unguided one.
+    pub(super) fn unguided(
+        &self,
+        medium: MediumRay,
+        strategy: &Strategy,
+        throughput: Rgb,
+        rng: &mut PathRng,
+    ) -> Flight {
+        self.weighed(null(medium, strategy, throughput, rng), strategy, true)
+    }
+
+    fn weighed(&self, mut flight: Flight, strategy: &Strategy, is_null: bool) -> Flight {
         if let Event::Scattered { t, .. } = flight.event {
+            let pdf = self.guide.pdf(t);
             flight.weight *= match strategy.advanced.distance {
-                Distance::Probes => alone(flight.pdf_null, guide.pdf(t), is_null),
-                _ => mis::mixture([1.0, share], [flight.pdf_null, guide.pdf(t)]),
+                Distance::Probes => alone(flight.pdf_null, pdf, is_null) / self.mean,
+                _ => mis::mixture([1.0, self.mean], [flight.pdf_null, pdf]),
             };
         }
-    };
-    let u = rng.at(Slot::GuidedDistance);
-    let guided = (u < share).then(|| {
-        let t = guide.sample((u / share).min(1.0 - f32::EPSILON));
-        let mut flight = tracking::fill(medium.clone(), strategy, throughput, t, rng);
-        weigh(&mut flight, false);
         flight
-    });
-    let mut unguided = null(medium, strategy, throughput, rng);
-    weigh(&mut unguided, true);
-    (unguided, guided)
+    }
 }
 
 /// The factor of a scattering event where guides alone may draw it.

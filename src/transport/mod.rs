@@ -73,6 +73,8 @@ pub struct Frame {
     gatherer: Gatherer,
     /// Those of the scene.
     probes: Option<Arc<Probes>>,
+    /// Radiance scattered into the rays of the camera on average, as the probes think.
+    mean_light: f32,
 }
 
 impl Frame {
@@ -82,7 +84,8 @@ impl Frame {
     pub fn new(scene: Arc<Scene>, size: UVec2, seed: u64) -> Self {
         let gatherer = Gatherer::new(&scene, size);
         let probes = Probes::new(&scene).map(Arc::new);
-        Self { scene, size, seed, gatherer, probes }
+        let mean_light = probes.as_ref().map_or(0.0, |probes| probes.mean_light(&scene, size));
+        Self { scene, size, seed, gatherer, probes, mean_light }
     }
 
     /// Pixels across and down.
@@ -100,7 +103,7 @@ impl Frame {
         let offset = Vec2::new(rng.at(Slot::PixelX), rng.at(Slot::PixelY));
         let ray = self.scene.camera.ray(self.size, pixel, offset);
         let probes = self.probes.as_deref();
-        let aids = Aids { gatherer: &self.gatherer, probes };
+        let aids = Aids { gatherer: &self.gatherer, probes, mean_light: self.mean_light };
         path::trace(&self.scene, aids, ray, &mut rng, observer)
     }
 }

@@ -13,7 +13,7 @@ use glam::Vec3A;
 use super::{
     PathSample,
     direct::{self, Departure},
-    distance::{self, Guide},
+    distance::{self, Fan, Guide},
     emission::{Errand, Gatherer, Glow},
     march,
     observer::{Observer, Step},
@@ -38,8 +38,8 @@ const ROULETTE_AFTER: u32 = 3;
 /// dim: at 1 the noise of dense smoke costs a third more time, that of lights inside of it several
 /// times as much.
 const ROULETTE_BELOW: f32 = 0.1;
-/// Rays of a path that ask the probes, where all vertices do: later ones bring so little that the
-/// lines along them cost more than they gain.
+/// Rays of a path that are guided at most: later ones bring so little that guides cost more than
+/// they gain, and each adds to the spread of the path's weight.
 const GUIDED_RAYS: u32 = 4;
 
 /// What was prepared for the scene.
@@ -49,6 +49,8 @@ pub struct Aids<'s> {
     pub gatherer: &'s Gatherer,
     /// What says where scattering pays, if that is asked for.
     pub probes: Option<&'s Probes>,
+    /// Radiance that the medium scatters into the rays of the camera on average, as the probes think.
+    pub mean_light: f32,
 }
 
 /// Follows one path from the camera along `ray`.
@@ -72,7 +74,6 @@ pub fn trace(
         sample: PathSample::default(),
     };
     while path.advance(rng, observer) {}
-    path.follow_branch(rng, observer);
     path.sample
 }
 
@@ -93,14 +94,13 @@ struct Path<'s> {
     sample: PathSample,
 }
 
-/// The camera ray's flight may be two: unguided, and guided.
+/// The camera ray may have several flights: one that is unguided, and guided ones.
+#[derive(Clone, Copy, PartialEq)]
 enum Branch {
     /// The unguided one is followed.
     Main,
-    /// It still is; then comes the other, from its first vertex on.
-    Waiting { vertex: Vertex, throughput: Rgb },
-    /// The guided one is followed.
-    Guided,
+    /// A guided one is followed, the first of them or not.
+    Guided { first: bool },
 }
 
 impl Path<'_> {
@@ -122,7 +122,7 @@ impl Path<'_> {
         }
         let flight = match marched {
             Some(_) => self.table.draw(medium, goes_on(end.as_ref()), rng),
-            None => self.fly(medium, end.as_ref(), rng),
+            None => self.fly(medium, end.as_ref(), rng, observer),
         };
         if flight.emission != Rgb::ZERO {
             let weight = direct::weight_of_emission(scene, &self.ray, self.departure.as_ref());
@@ -143,16 +143,31 @@ impl Path<'_> {
         }
     }
 
-    /// Follows the guided flight of the camera ray, if one waits.
-    fn follow_branch(&mut self, rng: &mut PathRng, observer: &mut impl Observer) {
-        let waiting = std::mem::replace(&mut self.branch, Branch::Guided);
-        if let Branch::Waiting { vertex, throughput } = waiting {
-            (self.throughput, self.scatters) = (throughput, 0);
+    /// Follows a guided flight of the camera ray to its end, then goes back to where it set out.
+    fn follow(
+        &mut self,
+        guided: Flight,
+        first: bool,
+        rng: &mut PathRng,
+        observer: &mut impl Observer,
+    ) {
+        self.count(guided.collisions);
+        let (ray, throughput, light) = (self.ray, self.throughput, self.light);
+        self.throughput *= guided.weight;
+        if let Event::Scattered { t, phase } = guided.event
+            && self.throughput.is_finite()
+            && self.throughput != Rgb::ZERO
+        {
+            self.branch = Branch::Guided { first };
+            let vertex = Vertex::volume(ray.at(t), ray.direction, phase);
             let mut goes_on = self.turn(&vertex, rng, observer);
             while goes_on {
                 goes_on = self.advance(rng, observer);
             }
         }
+        (self.ray, self.throughput, self.light) = (ray, throughput, light);
+        (self.branch, self.scatters, self.departure) = (Branch::Main, 0, None);
+        rng.enter_vertex(0);
     }
 
     /// The vertex a flight leads to, if there is one.
@@ -182,36 +197,53 @@ impl Path<'_> {
     }
 
     /// The flight to the next scattering event, or to the end of the ray. The camera ray may have
-    /// two, the second of which waits. Rays from vertices have one, which is guided where nothing
-    /// is gained by getting to their end.
-    fn fly(&mut self, medium: MediumRay, end: Option<&Intersection>, rng: &mut PathRng) -> Flight {
+    /// guided ones beside it, which are followed first. Rays from vertices have one, which is
+    /// guided where nothing is gained by getting to their end.
+    fn fly(
+        &mut self,
+        medium: MediumRay,
+        end: Option<&Intersection>,
+        rng: &mut PathRng,
+        observer: &mut impl Observer,
+    ) -> Flight {
         let strategy = &self.scene.strategy;
         let needs_end = !strategy.emission_ratio_tracking || goes_on(end);
         let is_first = self.scatters == 0;
         let guide = if is_first || !needs_end { self.guide(&medium, rng) } else { None };
         let flight = match guide {
             None => distance::null(medium, strategy, self.throughput, rng),
-            Some(guide) if is_first => {
-                let (flight, guided) =
-                    distance::null_and_guided(medium, strategy, &guide, self.throughput, rng);
-                if let Some(guided) = guided {
-                    self.wait(guided);
-                }
-                flight
-            }
+            Some(guide) if is_first => self.fan_out(medium, &guide, rng, observer),
             Some(guide) => distance::null_or_guided(medium, strategy, &guide, self.throughput, rng),
         };
         self.count(flight.collisions);
         flight
     }
 
+    /// The camera ray's flights: as many guided ones as pay, each of which is followed, and the
+    /// unguided one.
+    fn fan_out(
+        &mut self,
+        medium: MediumRay,
+        guide: &Guide,
+        rng: &mut PathRng,
+        observer: &mut impl Observer,
+    ) -> Flight {
+        let strategy = &self.scene.strategy;
+        let fan = Fan::new(strategy, guide, self.aids.mean_light, rng);
+        for (index, t) in fan.distances().enumerate() {
+            let flight = fan.guided(medium.clone(), strategy, t, self.throughput, rng);
+            self.follow(flight, index == 0, rng, observer);
+        }
+        fan.unguided(medium, strategy, self.throughput, rng)
+    }
+
     /// What guides the flight along the present ray.
     fn guide(&mut self, medium: &MediumRay, rng: &mut PathRng) -> Option<Guide> {
-        let probes = self.aids.probes?;
+        let probes = self.aids.probes.filter(|_| self.scatters < GUIDED_RAYS)?;
         let advanced = &self.scene.strategy.advanced;
         let (t0, t1) = medium.extent()?;
-        let asks = self.scatters == 0 || advanced.guide_all_vertices && self.scatters < GUIDED_RAYS;
-        let line = if asks { probes.along(medium.clone(), &self.ray) } else { None };
+        let asks = self.scatters == 0 || advanced.guide_all_vertices;
+        let line = if asks { Some(probes.along(medium.clone(), &self.ray)?) } else { None };
         if !advanced.equiangular {
             return Guide::new(line, None);
         }
@@ -224,19 +256,6 @@ impl Path<'_> {
             .light
             .and_then(|point| Equiangular::new(&self.ray, point, probes.mean_cosine(), t0, t1));
         Guide::new(line, light)
-    }
-
-    /// Keeps the guided flight of the camera ray for later.
-    fn wait(&mut self, guided: Flight) {
-        self.count(guided.collisions);
-        let throughput = self.throughput * guided.weight;
-        if let Event::Scattered { t, phase } = guided.event
-            && throughput.is_finite()
-            && throughput != Rgb::ZERO
-        {
-            let vertex = Vertex::volume(self.ray.at(t), self.ray.direction, phase);
-            self.branch = Branch::Waiting { vertex, throughput };
-        }
     }
 
     /// Marches along the present ray and keeps its table.
@@ -296,8 +315,9 @@ impl Path<'_> {
         }
         self.scatters += 1;
         match self.branch {
-            Branch::Guided => rng.enter_vertex_of_branch(self.scatters),
-            _ => rng.enter_vertex(self.scatters),
+            Branch::Main => rng.enter_vertex(self.scatters),
+            Branch::Guided { first: true } => rng.enter_vertex_of_branch(self.scatters),
+            Branch::Guided { first: false } => rng.enter_vertex(u32::MAX),
         }
         observer.step(Step::Vertex { vertex, throughput: self.throughput });
         let look = direct::sample_lights(self.scene, self.aids.gatherer, vertex, rng);

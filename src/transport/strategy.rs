@@ -64,14 +64,18 @@ pub struct Advanced {
     /// How a bounce chooses the light it looks at. `hierarchy` prefers what is bright and near;
     /// `uniform` gives every light the same chance.
     pub light_selection: LightSelection,
-    /// How far a ray goes before it scatters, with the probes on. `mis` takes the distances of the
-    /// probes and of chance in turn and weighs both, so that it is good wherever one of them is;
-    /// `probes` takes those of the probes alone, `null` those of chance alone.
+    /// How far a ray from the camera goes before it scatters, with the probes on. `mis` takes the
+    /// distances of the probes and of chance in turn and weighs both, so that it is good wherever
+    /// one of them is; `probes` takes those of the probes alone, `null` those of chance alone.
     pub distance: Distance,
     /// With `integrator = "march"`: the length of a step. Shorter steps, less bias; where nothing has
     /// voxels, each cell of the majorants counts as four.
     #[schemars(range(min = 0.05, max = 100.0), extend("unit" = "voxels"))]
     pub march_step: f32,
+    /// How often a ray from the camera scatters, with the probes on. `light` makes those scatter
+    /// more often into which more light is scattered: much less noise around lamps and fires, for
+    /// more time there. `even` gives all rays about the same.
+    pub scatter_probability: ScatterProbability,
     /// How many probes there are, about. More of them know the light better, and take longer to
     /// place.
     #[schemars(range(min = 64, max = 1_000_000))]
@@ -150,6 +154,17 @@ pub enum Distance {
     Null,
 }
 
+/// How often rays from the camera scatter.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ScatterProbability {
+    /// The more often, the more light is scattered into them.
+    #[default]
+    Light,
+    /// About equally often.
+    Even,
+}
+
 /// A named set of toggles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -165,12 +180,8 @@ pub enum Preset {
 
 /// Keys of `[strategy]` that the scene format knows but whose strategy is not there yet. They are
 /// refused with a message that says so, which is another message than for a misspelled key.
-pub const PLANNED_KEYS: &[&str] = &[
-    "advanced.probe_learning",
-    "advanced.scatter_probability",
-    "advanced.transmittance",
-    "advanced.tracker",
-];
+pub const PLANNED_KEYS: &[&str] =
+    &["advanced.probe_learning", "advanced.transmittance", "advanced.tracker"];
 
 /// Values of `advanced.light_selection` that the scene format knows but that are not there yet.
 pub const PLANNED_LIGHT_SELECTIONS: &[&str] = &["probes"];
@@ -216,6 +227,7 @@ impl Default for Advanced {
             light_selection: LightSelection::default(),
             distance: Distance::default(),
             march_step: 1.0,
+            scatter_probability: ScatterProbability::default(),
             probe_count: 4096,
             guide_all_vertices: false,
             equiangular: true,

@@ -15,7 +15,10 @@ use flambeau::{
     scene::{self, Overrides, VolumeCache},
     transport::{
         Frame, PathSample, PixelSampler, Scene,
-        strategy::{Advanced, BoostMode, Distance, LightSelection, NeeEvaluation, Strategy},
+        strategy::{
+            Advanced, BoostMode, Distance, LightSelection, NeeEvaluation, ScatterProbability,
+            Strategy,
+        },
     },
 };
 use glam::UVec2;
@@ -111,6 +114,11 @@ pub fn finer() -> [Advanced; 8] {
             },
             low_discrepancy: a ^ b ^ c,
             distance: if a ^ b { Distance::Probes } else { Distance::Mis },
+            scatter_probability: if b {
+                ScatterProbability::Even
+            } else {
+                ScatterProbability::Light
+            },
             equiangular: !c,
             guide_directions: !(a ^ c),
             guide_all_vertices: b ^ c,
@@ -157,6 +165,7 @@ fn effective(mut strategy: Strategy) -> Strategy {
     }
     if !strategy.probe_mis {
         advanced.distance = plain.distance;
+        advanced.scatter_probability = plain.scatter_probability;
         advanced.equiangular = plain.equiangular;
         advanced.guide_directions = plain.guide_directions;
         advanced.guide_all_vertices = plain.guide_all_vertices;
@@ -170,8 +179,8 @@ pub fn full_name(strategy: &Strategy) -> String {
         strategy.advanced;
     let spread = if strategy.advanced.low_discrepancy { "even" } else { "random" };
     let on = |flag: bool, name: &'static str| if flag { name } else { "" };
-    let Advanced { distance, equiangular, guide_directions, guide_all_vertices, .. } =
-        strategy.advanced;
+    let Advanced { distance, scatter_probability, equiangular, .. } = strategy.advanced;
+    let Advanced { guide_directions, guide_all_vertices, .. } = strategy.advanced;
     let guides = [
         on(equiangular, " angles"),
         on(guide_directions, " directions"),
@@ -179,7 +188,7 @@ pub fn full_name(strategy: &Strategy) -> String {
     ];
     format!(
         "{} {boost_mode:?} {boost_amount} {nee_evaluation:?} {light_selection:?} {spread} \
-         {distance:?}{}",
+         {distance:?} {scatter_probability:?}{}",
         name(strategy),
         guides.concat()
     )

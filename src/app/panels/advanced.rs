@@ -104,6 +104,11 @@ fn guided_scattering(
         if choice(ui, "Distance", "strategy.advanced.distance", &mut advanced.distance) {
             *edit = Some("distance");
         }
+        let (key, value) =
+            ("strategy.advanced.scatter_probability", &mut advanced.scatter_probability);
+        if choice(ui, "Scatter more", key, value) {
+            *edit = Some("scatter probability");
+        }
         let mut count = advanced.probe_count as f32;
         if probe_count(opened).show(ui, &mut count) {
             advanced.probe_count = count as u32;

@@ -13,6 +13,10 @@ const SHARE_OF_MATTER: f32 = 0.1;
 pub struct Line {
     /// T of all of it, as the probes think.
     transmittance: f32,
+    /// Radiance scattered into it, as they think.
+    light: f32,
+    /// Second moment of an unguided flight's find of it, relative to the square of `light`.
+    spread: f32,
     pieces: SmallVec<[Piece; MOST_PIECES]>,
 }
 
@@ -51,6 +55,8 @@ pub(super) struct LineBuilder {
     pieces: SmallVec<[Piece; MOST_PIECES]>,
     /// exp(−τ) of all before.
     transmittance: f32,
+    /// Σ light²/P, P the probability that an unguided flight ends in a stretch.
+    square: f32,
     /// Stretches in a piece, and in the last one so far.
     stride: u32,
     held: u32,
@@ -58,20 +64,25 @@ pub(super) struct LineBuilder {
 
 impl LineBuilder {
     pub(super) fn new() -> Self {
-        Self { pieces: SmallVec::new(), transmittance: 1.0, stride: 1, held: 0 }
+        Self { pieces: SmallVec::new(), transmittance: 1.0, square: 0.0, stride: 1, held: 0 }
     }
 
     /// Adds what comes next.
     pub(super) fn add(&mut self, stretch: &Stretch) {
         let Stretch { t0, t1, mu_t, majorant, scattered } = *stretch;
-        let absorbed = mass(mu_t, t1 - t0);
+        let depth = mu_t * (t1 - t0);
+        let lost = -(-depth).exp_m1();
+        let absorbed = if depth < FLAT { t1 - t0 } else { lost / mu_t };
         let light = self.transmittance * scattered * absorbed;
         let matter = majorant * absorbed;
         if !(matter > 0.0 && matter.is_finite()) {
             return;
         }
-        self.transmittance *= (-mu_t * (t1 - t0)).exp();
         let light = if light.is_finite() { light } else { 0.0 };
+        if light > 0.0 {
+            self.square += light * (light / (self.transmittance * lost));
+        }
+        self.transmittance *= 1.0 - lost;
         let piece = Piece { t0, t1, falloff: mu_t, share: light, before: matter };
         self.held += 1;
         match self.pieces.last_mut() {
@@ -116,7 +127,8 @@ impl LineBuilder {
             piece.before = before;
             before += piece.share;
         }
-        Some(Line { transmittance: self.transmittance, pieces })
+        let (light, spread) = if lit { (light, self.square / light / light) } else { (0.0, 1.0) };
+        Some(Line { transmittance: self.transmittance, light, spread, pieces })
     }
 }
 
@@ -130,6 +142,17 @@ impl Line {
     /// T of all of it, as the probes think.
     pub fn transmittance(&self) -> f32 {
         self.transmittance
+    }
+
+    /// Radiance scattered into it, as the probes think; 0 where they know of none.
+    pub fn light(&self) -> f32 {
+        self.light
+    }
+
+    /// How much an unguided flight misses of that light: the variance of what it finds, relative to
+    /// the square of its mean. 0 where it finds the same whatever it does.
+    pub fn missed(&self) -> f32 {
+        (self.spread - 1.0).max(0.0)
     }
 
     /// A parameter with density [`Line::pdf`], from `u` in [0, 1).
