@@ -15,7 +15,7 @@ use egui_kittest::{Harness, SnapshotOptions};
 use flambeau::app::{App, Dialogs, Document, Level, Notice, Options, Scale, ramp_color};
 use flambeau::scene;
 use flambeau::transport::strategy::{
-    Advanced, BoostMode, LightSelection, NeeEvaluation, Tracker, TransmittanceEstimator,
+    Advanced, BoostMode, Integrator, LightSelection, NeeEvaluation, Tracker, TransmittanceEstimator,
 };
 
 /// A ball of glowing smoke on a small fixed film that ends after a few samples.
@@ -211,6 +211,23 @@ fn fire_that_lights_nothing_says_so() {
     let soot = BALL.replace("albedo = 0.4", "albedo = 0.0");
     let Some(window) = Window::open(&soot) else { return };
     assert!(window.has("No effect here: nothing here scatters or reflects light"));
+}
+
+#[test]
+fn ray_marching_is_labeled_biased_wherever_it_is_on() {
+    let Some(mut window) = Window::open(BALL) else { return };
+    assert!(!window.has("biased") && !window.has("Biased"));
+    window.click(Role::DisclosureTriangle, "Advanced");
+    window.click(Role::Button, "March");
+    assert_eq!(window.document().settings.strategy.integrator, Integrator::March);
+    assert!(window.has("Biased: ray marching is on"), "in the panel");
+    assert!(window.harness.query_by_label("biased").is_some(), "in the status line");
+    let idle = "No effect here: ray marching";
+    assert_eq!(window.harness.query_all_by_label_contains(idle).count(), 4);
+    window.click(Role::Button, "Baseline");
+    assert!(window.has("Biased: ray marching is on"), "a preset leaves the integrator alone");
+    window.click(Role::Button, "Path");
+    assert!(!window.has("biased") && !window.has("Biased"));
 }
 
 #[test]

@@ -263,6 +263,16 @@ fn a_resumed_render_is_the_uninterrupted_one() {
     assert!(!place.path("x.exr").exists());
 }
 
+#[test]
+fn a_biased_picture_is_called_one() {
+    let place = Place::new();
+    let render = ["render", "scene.toml", "-o", "out.npy", "--spp", "1"];
+    let marching = [&render[..], &["--set", "strategy.integrator=march"]].concat();
+    assert!(!place.run(&render).2.contains("biased"));
+    let (code, _, stderr) = place.run(&marching);
+    assert_eq!((code, stderr.matches("biased").count()), (0, 1), "{stderr}");
+}
+
 /// A snapshot knows the files it was rendered from, not only their names.
 #[test]
 fn a_changed_volume_is_not_resumed() {

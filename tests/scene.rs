@@ -227,7 +227,7 @@ const MALFORMED: &[(&str, &[&str])] = &[
     ("[strategy]\nmajorant_bost = true", &["strategy.majorant_bost:", "strategy.majorant_boost"]),
     ("[strategy]\nmajorant_boost = 1", &["strategy.majorant_boost:", "expected boolean"]),
     ("[strategy]\npreset = 'best'", &["strategy.preset:", "\"best\"", "\"full\""]),
-    ("[strategy]\nintegrator = 'march'", &["strategy.integrator:", "not there yet"]),
+    ("[strategy]\nintegrator = 'walk'", &["strategy.integrator:", "\"path\"", "\"march\""]),
     (
         "[strategy.advanced]\nprobe_learning = true",
         &["strategy.advanced.probe_learning:", "strategy is not there yet"],
@@ -361,7 +361,7 @@ fn faulty_overrides_are_refused_by_name() {
         ("volume=3", &["--set: volume:", "[[volume]]"]),
         ("volume.0=3", &["--set: volume.0:", "expected table"]),
         ("strategy.preset=best", &["--set: strategy.preset:", "\"best\""]),
-        ("strategy.integrator=march", &["strategy.integrator:", "not there yet"]),
+        ("strategy.advanced.probe_learning=true", &["probe_learning:", "not there yet"]),
         ("a.b.c=1", &["--set: a:", "unknown key"]),
         ("=1", &["--set:", "unknown key"]),
     ] {

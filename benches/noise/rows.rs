@@ -1,7 +1,7 @@
 //! The strategies that are compared.
 
 use flambeau::transport::strategy::{
-    Advanced, BoostMode, LightSelection, NeeEvaluation, Preset, Strategy, Tracker,
+    Advanced, BoostMode, Integrator, LightSelection, NeeEvaluation, Preset, Strategy, Tracker,
     TransmittanceEstimator,
 };
 
@@ -27,7 +27,7 @@ const MODES: [(BoostMode, &str); 4] = [
 /// of what it finds.
 const AMOUNTS: [f32; 5] = [0.25, 1.0, 4.0, 16.0, 64.0];
 
-/// Toggle upon toggle, from none to all, then all but one of the finer choices.
+/// Toggle upon toggle, from none to all, then all but one of the finer choices, then the old system.
 pub fn toggles(scene: &BenchScene) -> Vec<Row> {
     let baseline = Preset::Baseline.strategy();
     let decoupling = Strategy { emission_decoupling: true, ..baseline };
@@ -60,6 +60,7 @@ pub fn toggles(scene: &BenchScene) -> Vec<Row> {
     }
     let independent = Advanced { low_discrepancy: false, ..default };
     rows.push(row("full, independent samples", full_but(independent)));
+    rows.push(row("old system, biased", Strategy { integrator: Integrator::March, ..full }));
     rows
 }
 

@@ -23,7 +23,8 @@ pub fn preamble(plan: &Plan) {
          little.\n\
          - ms/spp: CPU time of all threads per sample of every pixel, over {THREADS}.\n\
          - efficiency: 1 / (variance x seconds). Equal samples, equal time: how many times less \
-         variance than in the first row.",
+         variance than in the first row.\n\
+         - the old system, ray marching, is biased: how far its mean is from the others' stays.",
         SEEDS[0],
         SEEDS[1],
         100.0 * error,

@@ -21,9 +21,16 @@ pub enum Toggle {
     Probes,
 }
 
+/// Why most toggles are idle with ray marching.
+const MARCHING: &str =
+    "ray marching (Advanced) collects glow and chooses distances in its own way.";
+
 /// Why `toggle` makes no difference to noise or cost in this scene; `None` where it does.
 pub fn no_effect(toggle: Toggle, settings: &Settings) -> Option<&'static str> {
     let strategy = &settings.strategy;
+    if strategy.is_biased() && toggle != Toggle::FireAsLight {
+        return Some(MARCHING);
+    }
     if toggle == Toggle::Probes {
         return probes_without_effect(settings);
     }
@@ -126,7 +133,7 @@ fn absorbs(albedo: &Albedo) -> bool {
 mod tests {
     use super::*;
     use crate::scene::settings::Color;
-    use crate::transport::strategy::Preset;
+    use crate::transport::strategy::{Integrator, Preset};
 
     fn scene(mode: EmissionMode, preset: Preset) -> Settings {
         let mut volume = VolumeSettings::default();
@@ -199,6 +206,24 @@ mod tests {
         settings.strategy.advanced.nee_evaluation = NeeEvaluation::Line;
         settings.volume[0].albedo = Albedo::Gray(0.0);
         assert!(idle(&settings), "nothing here looks at the fire");
+    }
+
+    #[test]
+    fn ray_marching_leaves_fire_as_a_light_alone() {
+        let mut settings = scene(EmissionMode::Constant, Preset::Full);
+        settings.volume[0].albedo = Albedo::Gray(0.3);
+        settings.strategy.integrator = Integrator::March;
+        for toggle in [
+            Toggle::EmissionDecoupling,
+            Toggle::EmissionRatioTracking,
+            Toggle::MajorantBoost,
+            Toggle::Probes,
+        ] {
+            assert!(no_effect(toggle, &settings).unwrap().contains("ray marching"), "{toggle:?}");
+        }
+        assert_eq!(no_effect(Toggle::FireAsLight, &settings), None);
+        settings.volume[0].albedo = Albedo::Gray(0.0);
+        assert!(no_effect(Toggle::FireAsLight, &settings).is_some());
     }
 
     #[test]

@@ -171,6 +171,9 @@ fn summary(settings: &Settings) -> String {
     let strategy = &settings.strategy;
     let preset = strategy.preset().map_or("mixed", |preset| preset.name());
     report.row("strategy", preset);
+    if strategy.is_biased() {
+        report.row("", "integrator = march (biased)");
+    }
     for (name, on) in [
         ("emission_decoupling", strategy.emission_decoupling),
         ("emission_ratio_tracking", strategy.emission_ratio_tracking),

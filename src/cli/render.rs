@@ -66,6 +66,9 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
     let go_on = |_: f32| !interrupt.load(Ordering::Relaxed);
     let cache = VolumeCache::default();
     let mut settings = arguments.scene.settings(&cache, &go_on)?;
+    if settings.strategy.is_biased() {
+        warn("ray marching is on (strategy.integrator): the picture is biased");
+    }
     let limits = limits(arguments, &mut settings);
     check_folders(arguments)?;
     let files = match arguments.resume.is_some() || writes_snapshot(arguments) {

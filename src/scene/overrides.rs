@@ -51,9 +51,10 @@ fn preset_named(value: &Value, source: &str) -> Result<Preset> {
     name.parse().map_err(|reason: String| Error::invalid(source, "strategy.preset", reason))
 }
 
-/// The toggles of a preset without its advanced choices.
+/// The toggles of a preset alone.
 fn toggles(preset: Preset) -> Result<Table> {
     let mut table = to_table(&preset.strategy())?;
+    table.remove("integrator");
     table.remove("advanced");
     Ok(table)
 }

@@ -28,6 +28,11 @@ impl Surface {
     pub fn emits(&self) -> bool {
         self.emission.max_element() > 0.0
     }
+
+    /// Whether paths go on from it.
+    pub fn reflects(&self) -> bool {
+        self.material != Material::Black
+    }
 }
 
 /// Where a ray meets the surfaces first.

@@ -10,9 +10,10 @@ use glam::Vec3A;
 
 use super::{
     emission::{Errand, Gatherer},
+    march,
     scene::Scene,
     shadow,
-    strategy::{LightSelection, NeeEvaluation, Strategy},
+    strategy::{Integrator, LightSelection, NeeEvaluation, Strategy},
     vertex::Vertex,
 };
 use crate::{
@@ -20,6 +21,7 @@ use crate::{
     math::{PathRng, Ray, Rgb, Slot, mean},
     sampling::mis,
     surface::{self, Intersection, occluded},
+    volume::world::MediumRay,
 };
 
 /// Shadow rays stop short of their light by this share, so that they don't meet the light itself.
@@ -175,8 +177,7 @@ impl<'a> Aim<'a> {
             return (Rgb::ZERO, 0);
         }
         let medium = scene.world.along(ray, distance);
-        let estimator = scene.strategy.advanced.transmittance;
-        let (transmittance, collisions) = shadow::transmittance(medium, estimator, rng);
+        let (transmittance, collisions) = transmittance(scene, medium, rng);
         (emission * transmittance / (pdf_volume * distance * distance), collisions)
     }
 }
@@ -272,8 +273,17 @@ fn transmittance_to(scene: &Scene, ray: &Ray, distance: f32, rng: &mut PathRng) 
     if occluded(&scene.surfaces, ray, SHORT_OF_LIGHT * distance) {
         return (Rgb::ZERO, 0);
     }
-    let estimator = scene.strategy.advanced.transmittance;
-    shadow::transmittance(scene.world.along(*ray, distance), estimator, rng)
+    transmittance(scene, scene.world.along(*ray, distance), rng)
+}
+
+/// Transmittance on the way to a light, and the steps it took.
+fn transmittance(scene: &Scene, medium: MediumRay<'_>, rng: &mut PathRng) -> (Rgb, u32) {
+    match scene.strategy.integrator {
+        Integrator::Path => {
+            shadow::transmittance(medium, scene.strategy.advanced.transmittance, rng)
+        }
+        Integrator::March => march::transmittance(medium, scene.strategy.advanced.march_step, rng),
+    }
 }
 
 /// Whether looks at volumes take one point of them. Points are drawn inside of the lights only.

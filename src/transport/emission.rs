@@ -9,9 +9,9 @@ use std::ops::ControlFlow;
 use glam::UVec2;
 
 use super::{
-    optimal,
+    march, optimal,
     scene::Scene,
-    strategy::{Advanced, BoostMode, Strategy},
+    strategy::{Advanced, BoostMode, Integrator, Strategy},
     stratified,
     tracking::{Collision, EMISSION_FLOOR, Walk, exp_neg, null_coefficient, roulette, track},
     tuning,
@@ -71,6 +71,8 @@ enum Kind {
     Stratified(f32),
     /// The same.
     Optimal(f32),
+    /// Biased, by steps of so many voxels.
+    March(f32),
 }
 
 impl Gatherer {
@@ -80,6 +82,9 @@ impl Gatherer {
         let strategy = &scene.strategy;
         let amount = strategy.advanced.boost_amount;
         Self(match strategy.advanced.boost_mode {
+            _ if strategy.integrator == Integrator::March => {
+                Kind::March(strategy.advanced.march_step)
+            }
             _ if !strategy.majorant_boost => Kind::RatioTracking(EmissionMajorant::of(strategy)),
             BoostMode::Stratified => Kind::Stratified(amount),
             // The looks along camera rays are what is measured; without them, none.
@@ -112,6 +117,7 @@ impl Gatherer {
             }
             Kind::Stratified(looks) => stratified::gather(medium, looks, errand, rng),
             Kind::Optimal(looks) => optimal::gather(medium, looks, errand, rng),
+            Kind::March(voxels) => march::gather(medium, voxels, rng),
         }
     }
 }

@@ -4,6 +4,7 @@ pub mod camera;
 pub mod direct;
 mod distance;
 pub mod emission;
+mod march;
 pub mod observer;
 mod optimal;
 pub mod path;
@@ -45,7 +46,7 @@ pub struct PathSample {
     pub alpha: f32,
     /// Distance of the first event or surface, if there was one.
     pub depth: Option<f32>,
-    /// Tentative collisions of all walks of the path.
+    /// Tentative collisions of all walks of the path, and steps of ray marching.
     pub tracking_steps: u32,
     /// Whether the path was cut, at [`path::GUARD`] events or [`tracking::MOST_COLLISIONS`].
     pub guard_hit: bool,

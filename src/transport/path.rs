@@ -1,12 +1,12 @@
 //! The path: camera, flights through the medium, scattering and reflection, light on the way.
 //!
-//! | what the ray from a vertex gathers | settings without ratio tracking | with ratio tracking |
+//! | what the ray from a vertex gathers | settings without ratio tracking | with it, or marching |
 //! |---|---|---|
 //! | ε on the ray | the scattering walk's own, up to its event | the emission walk, whole ray |
 //! | the end of the ray | when the scattering walk gets there | with the emission walk's T |
 //!
 //! With ratio tracking the scattering walk gathers neither, so that nothing counts twice.
-//! Every combination of toggles has the same mean.
+//! Every combination of toggles has the same mean. A marched ray stands for both walks, biased.
 
 use glam::Vec3A;
 
@@ -14,7 +14,8 @@ use super::{
     PathSample,
     direct::{self, Departure},
     distance::{self, Fan, Guide},
-    emission::{Errand, Gatherer},
+    emission::{Errand, Gatherer, Glow},
+    march,
     observer::{Observer, Step},
     probes::Probes,
     scene::Scene,
@@ -26,7 +27,7 @@ use crate::{
     light::{Choice, Receiver},
     math::{PathRng, Ray, Rgb, mean},
     sampling::{equiangular::Equiangular, halo::Halo},
-    surface::{self, Bsdf, Intersection, Material},
+    surface::{self, Bsdf, Intersection},
     volume::world::MediumRay,
 };
 
@@ -76,6 +77,7 @@ pub fn trace(
         scatters: 0,
         departure: None,
         light: None,
+        table: march::Table::default(),
         branch: Branch::Main,
         sample: PathSample::default(),
     };
@@ -94,6 +96,8 @@ struct Path<'s> {
     departure: Option<Departure>,
     /// A point of a light that guides the ray.
     light: Option<Vec3A>,
+    /// Of the ray, where it is marched.
+    table: march::Table,
     branch: Branch,
     sample: PathSample,
 }
@@ -116,14 +120,18 @@ impl Path<'_> {
         observer.step(Step::Ray { ray: &self.ray, t_max, throughput: self.throughput });
 
         let medium = scene.world.along(self.ray, t_max);
+        let marched = scene.strategy.is_biased().then(|| self.march(medium.clone(), rng));
         let coverage = scene
             .strategy
-            .emission_ratio_tracking
-            .then(|| self.gather_by_ratio_tracking(medium.clone(), end.as_ref(), rng, observer));
+            .gathers_whole_rays()
+            .then(|| self.gather_whole_ray(medium.clone(), marched, end.as_ref(), rng, observer));
         if coverage.is_some() && self.is_last_ray() {
             return false;
         }
-        let flight = self.fly(medium, end.as_ref(), rng, observer);
+        let flight = match marched {
+            Some(_) => self.table.draw(medium, goes_on(end.as_ref()), rng),
+            None => self.fly(medium, end.as_ref(), rng, observer),
+        };
         if flight.emission != Rgb::ZERO {
             let weight = direct::weight_of_emission(scene, &self.ray, self.departure.as_ref());
             self.gather_emission(weight * flight.emission, observer);
@@ -186,7 +194,7 @@ impl Path<'_> {
                 Some(Vertex::volume(self.ray.at(t), self.ray.direction, phase))
             }
             Event::Reached => {
-                if !self.scene.strategy.emission_ratio_tracking {
+                if !self.scene.strategy.gathers_whole_rays() {
                     let departure = self.departure.as_ref();
                     let radiance = direct::at_the_end(self.scene, &self.ray, end, departure);
                     self.gather_end(radiance, observer);
@@ -207,8 +215,7 @@ impl Path<'_> {
         observer: &mut impl Observer,
     ) -> Flight {
         let strategy = &self.scene.strategy;
-        let needs_end = !strategy.emission_ratio_tracking
-            || end.is_some_and(|end| end.surface.material != Material::Black);
+        let needs_end = !strategy.emission_ratio_tracking || goes_on(end);
         let is_first = self.scatters == 0;
         let guide = if is_first || !needs_end { self.guide(&medium, rng) } else { None };
         let flight = match guide {
@@ -261,11 +268,20 @@ impl Path<'_> {
         Guide::new(line, light)
     }
 
-    /// The emission walk over the whole ray, and what lies at its end through the same T, which is
-    /// returned.
-    fn gather_by_ratio_tracking(
+    /// Marches along the present ray and keeps its table.
+    fn march(&mut self, medium: MediumRay, rng: &mut PathRng) -> Glow {
+        let voxels = self.scene.strategy.advanced.march_step;
+        let glow = self.table.fill(medium, voxels, self.throughput, rng);
+        self.count(glow.collisions);
+        glow
+    }
+
+    /// The emission of the whole ray, by the emission walk if it was not `marched`, and what lies at
+    /// its end through the same T, which is returned.
+    fn gather_whole_ray(
         &mut self,
         medium: MediumRay,
+        marched: Option<Glow>,
         end: Option<&Intersection>,
         rng: &mut PathRng,
         observer: &mut impl Observer,
@@ -276,9 +292,13 @@ impl Path<'_> {
         if dark && departure.is_some() {
             return Rgb::ZERO;
         }
-        let errand = if departure.is_none() && !dark { Errand::Camera } else { Errand::Scattered };
-        let glow = self.aids.gatherer.gather(medium, errand, rng);
-        self.count(glow.collisions);
+        let is_seen = departure.is_none() && !dark;
+        let glow = marched.unwrap_or_else(|| {
+            let errand = if is_seen { Errand::Camera } else { Errand::Scattered };
+            let glow = self.aids.gatherer.gather(medium, errand, rng);
+            self.count(glow.collisions);
+            glow
+        });
         let departure = self.departure.as_ref();
         if glow.emission != Rgb::ZERO {
             let weight = direct::weight_of_emission(self.scene, &self.ray, departure);
@@ -426,9 +446,13 @@ impl Path<'_> {
     }
 }
 
+/// Whether a path goes on from the end of its ray.
+fn goes_on(end: Option<&Intersection>) -> bool {
+    end.is_some_and(|end| end.surface.reflects())
+}
+
 /// The vertex on the surface at the end of `ray`; `None` on black ones.
 fn reflecting(end: &Intersection, ray: &Ray) -> Option<Vertex> {
-    let material = end.surface.material;
-    (material != Material::Black)
-        .then(|| Vertex::surface(&end.hit, Bsdf::new(material, end.hit.normal, -ray.direction)))
+    let bsdf = || Bsdf::new(end.surface.material, end.hit.normal, -ray.direction);
+    end.surface.reflects().then(|| Vertex::surface(&end.hit, bsdf()))
 }

@@ -1,8 +1,8 @@
 //! The sampling strategy: one struct is the scene file's `[strategy]`, the command line's
 //! `--preset` and `--set strategy.*`, the header of a snapshot and the window's toggles.
 //!
-//! Every combination converges to the same picture; only noise and cost change. The doc comments
-//! of the fields are the help that artists read.
+//! Every combination converges to the same picture, ray marching apart; only noise and cost change.
+//! The doc comments of the fields are the help that artists read.
 
 use schemars::{JsonSchema, Schema};
 use serde::{Deserialize, Serialize};
@@ -27,6 +27,12 @@ pub struct Strategy {
     /// Scatter where light is: probes spread over the smoke know how bright it is lit and send
     /// paths there. Much less noise for torches in mist and other lights inside of thin smoke.
     pub probe_mis: bool,
+    /// How light is followed through volumes. `path` is right on average, whatever else is set;
+    /// `march` is ray marching, the old system, kept for comparison: its pictures are biased, and
+    /// stay so however long they render. It collects the fire's glow at every step and scatters by
+    /// a table of its own, so that decoupling, ratio tracking, the boost, the probes and their finer
+    /// choices change nothing with it. All other keys mean what they always do.
+    pub integrator: Integrator,
     /// The finer choices behind the toggles.
     pub advanced: Advanced,
 }
@@ -64,6 +70,10 @@ pub struct Advanced {
     /// distances of the probes and of chance in turn and weighs both, so that it is good wherever
     /// one of them is; `probes` takes those of the probes alone, `null` those of chance alone.
     pub distance: Distance,
+    /// With `integrator = "march"`: the length of a step. Shorter steps, less bias; where nothing has
+    /// voxels, each cell of the majorants counts as four.
+    #[schemars(range(min = 0.05, max = 100.0), extend("unit" = "voxels"))]
+    pub march_step: f32,
     /// How often a ray from the camera scatters, with the probes on. `light` makes those scatter
     /// more often into which more light is scattered: much less noise around lamps and fires, for
     /// more time there. `even` gives all rays about the same.
@@ -92,6 +102,17 @@ pub struct Advanced {
     /// Spread the samples of a pixel evenly instead of at random. Less noise at no cost; off it
     /// shows what independent samples would bring.
     pub low_discrepancy: bool,
+}
+
+/// How light is followed through volumes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Integrator {
+    /// By paths that are right on average, with the strategies that are on.
+    #[default]
+    Path,
+    /// By ray marching, the old system: biased, for comparison.
+    March,
 }
 
 /// How the majorant boost places its steps.
@@ -198,15 +219,30 @@ pub enum Preset {
 
 /// Keys of `[strategy]` that the scene format knows but whose strategy is not there yet. They are
 /// refused with a message that says so, which is another message than for a misspelled key.
-pub const PLANNED_KEYS: &[&str] = &["integrator", "advanced.probe_learning", "advanced.integrator"];
+pub const PLANNED_KEYS: &[&str] = &["advanced.probe_learning"];
 
 impl Strategy {
-    /// The preset whose toggles these are, whatever the advanced choices; the fuller one where
-    /// two presets coincide.
+    /// The preset whose toggles these are, whatever the integrator and the advanced choices; the
+    /// fuller one where two presets coincide.
     pub fn preset(&self) -> Option<Preset> {
         [Preset::Full, Preset::Emission, Preset::Baseline]
             .into_iter()
-            .find(|preset| Self { advanced: self.advanced, ..preset.strategy() } == *self)
+            .find(|preset| self.with_toggles_of(*preset) == *self)
+    }
+
+    /// With the toggles of a preset; the integrator and the advanced choices stay.
+    pub fn with_toggles_of(&self, preset: Preset) -> Self {
+        Self { integrator: self.integrator, advanced: self.advanced, ..preset.strategy() }
+    }
+
+    /// Whether a ray's emission and its end are gathered all along it, wherever it scatters.
+    pub fn gathers_whole_rays(&self) -> bool {
+        self.emission_ratio_tracking || self.is_biased()
+    }
+
+    /// Whether the picture is another one than the right one, however many samples it has.
+    pub fn is_biased(&self) -> bool {
+        self.integrator == Integrator::March
     }
 
     /// Why the tracker is refused beside the rest, and how to mend that; `None` where it is not.
@@ -216,7 +252,7 @@ impl Strategy {
 
     /// [`Strategy::tracker_refusal`] if `tracker` were chosen.
     pub fn refusal_of(&self, tracker: Tracker) -> Option<&'static str> {
-        if tracker != Tracker::Decomposition {
+        if tracker != Tracker::Decomposition || self.is_biased() {
             return None;
         }
         if self.probe_mis && self.advanced.distance != Distance::Null {
@@ -238,7 +274,7 @@ impl Strategy {
 
     /// Whether probes say where paths scatter.
     pub fn guides(&self) -> bool {
-        self.probe_mis && self.advanced.distance != Distance::Null
+        self.probe_mis && self.advanced.distance != Distance::Null && !self.is_biased()
     }
 }
 
@@ -257,6 +293,7 @@ impl Default for Advanced {
             nee_evaluation: NeeEvaluation::default(),
             light_selection: LightSelection::default(),
             distance: Distance::default(),
+            march_step: 1.0,
             scatter_probability: ScatterProbability::default(),
             transmittance: TransmittanceEstimator::default(),
             tracker: Tracker::default(),
@@ -282,6 +319,7 @@ impl Preset {
             majorant_boost: on,
             nee: on,
             probe_mis: self == Self::Full,
+            integrator: Integrator::default(),
             advanced: Advanced::default(),
         }
     }

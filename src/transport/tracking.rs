@@ -124,15 +124,21 @@ pub(super) fn null_coefficient(rate: f32, mu_t: Rgb) -> Rgb {
 /// Ends a walk of small weight by chance, and makes up for it where it goes on.
 #[inline]
 pub(super) fn roulette(weight: &mut Rgb, rng: &mut PathRng) -> ControlFlow<()> {
+    roulette_below(weight, ROULETTE_BELOW, rng)
+}
+
+/// [`roulette`] of weights below a given one.
+#[inline]
+pub(super) fn roulette_below(weight: &mut Rgb, below: f32, rng: &mut PathRng) -> ControlFlow<()> {
     let largest = weight.abs().max_element();
     if !largest.is_finite() {
         // Leads nowhere, and is counted with the sample it spoils.
         return ControlFlow::Break(());
     }
-    if largest >= ROULETTE_BELOW {
+    if largest >= below {
         return ControlFlow::Continue(());
     }
-    let survival = largest / ROULETTE_BELOW;
+    let survival = largest / below;
     if rng.uniform() >= survival {
         *weight = Rgb::ZERO;
         return ControlFlow::Break(());

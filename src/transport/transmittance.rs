@@ -27,7 +27,7 @@ const MORE_COMBS: f32 = 0.25;
 /// The majorants' optical distance of a block.
 const BLOCK_DEPTH: f32 = 2.0;
 /// The golden ratio's fraction: jitters that advance by it never fall into step with the cells.
-const GOLDEN: f32 = 0.618_034;
+pub(super) const GOLDEN: f32 = 0.618_034;
 
 /// One jittered place in each unit of a measure.
 #[derive(Clone, Copy, Debug)]

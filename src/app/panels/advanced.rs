@@ -12,6 +12,8 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
     let opened = panel.editor.opened().settings.strategy.advanced;
     let strategy = &mut panel.editor.document.settings.strategy;
     let mut edit = None;
+    integrator(ui, strategy, opened, &mut edit);
+    ui.add_space(space::TIGHT);
     boost(ui, strategy, opened, &mut edit);
     ui.add_space(space::TIGHT);
     fire_as_light(ui, strategy, &mut edit);
@@ -29,10 +31,27 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
     }
 }
 
+fn integrator(
+    ui: &mut Ui,
+    strategy: &mut Strategy,
+    opened: Advanced,
+    edit: &mut Option<&'static str>,
+) {
+    if choice(ui, "Integrator", "strategy.integrator", &mut strategy.integrator) {
+        *edit = Some("integrator");
+    }
+    ui.add_enabled_ui(strategy.is_biased(), |ui| {
+        if march_step(opened).show(ui, &mut strategy.advanced.march_step) {
+            *edit = Some("march step");
+        }
+    });
+}
+
 fn boost(ui: &mut Ui, strategy: &mut Strategy, opened: Advanced, edit: &mut Option<&'static str>) {
     let clamps = is_clamped(strategy);
+    let boosts = strategy.majorant_boost && !strategy.is_biased();
     let advanced = &mut strategy.advanced;
-    ui.add_enabled_ui(strategy.majorant_boost, |ui| {
+    ui.add_enabled_ui(boosts, |ui| {
         if choice(ui, "Boost mode", "strategy.advanced.boost_mode", &mut advanced.boost_mode) {
             *edit = Some("boost mode");
         }
@@ -81,8 +100,9 @@ fn guided_scattering(
     opened: Advanced,
     edit: &mut Option<&'static str>,
 ) {
+    let guides = strategy.probe_mis && !strategy.is_biased();
     let advanced = &mut strategy.advanced;
-    ui.add_enabled_ui(strategy.probe_mis, |ui| {
+    ui.add_enabled_ui(guides, |ui| {
         if choice(ui, "Distance", "strategy.advanced.distance", &mut advanced.distance) {
             *edit = Some("distance");
         }
@@ -141,6 +161,17 @@ fn probe_count(opened: Advanced) -> Number<'static> {
         logarithmic: true,
         unit: "",
         reset: opened.probe_count as f32,
+    }
+}
+
+fn march_step(opened: Advanced) -> Number<'static> {
+    Number {
+        name: "March step",
+        key: "strategy.advanced.march_step",
+        soft: 0.1..=8.0,
+        logarithmic: true,
+        unit: " vx",
+        reset: opened.march_step,
     }
 }
 

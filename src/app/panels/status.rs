@@ -11,6 +11,7 @@ use crate::app::viewport::Viewport;
 use crate::app::widgets::{count, finite};
 use crate::image::tone::ToneCurve;
 use crate::render::RenderStats;
+use crate::transport::strategy::Strategy;
 
 /// Room that the zoom takes.
 const ZOOM_WIDTH: f32 = 70.0;
@@ -30,6 +31,7 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>, engine: &Engine, viewport: &View
         if ui.add(button).on_hover_text(format!("{help}  [{key}]")).clicked() {
             panel.commands.push(Command::PauseResume);
         }
+        bias(ui, &panel.editor.document.settings.strategy);
         match engine.picture() {
             Some(picture) => progress(ui, &picture.stats, engine),
             None => {
@@ -53,6 +55,15 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>, engine: &Engine, viewport: &View
             }
         });
     });
+}
+
+/// A picture that will never be quite right says so.
+fn bias(ui: &mut Ui, strategy: &Strategy) {
+    if strategy.is_biased() {
+        let help = "Ray marching is on (Strategy, Advanced): this picture is not quite right, and \
+                    more samples will not mend that.";
+        ui.label(RichText::new("biased").color(color::WARNING)).on_hover_text(help);
+    }
 }
 
 fn progress(ui: &mut Ui, stats: &RenderStats, engine: &Engine) {

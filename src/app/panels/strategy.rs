@@ -42,6 +42,11 @@ pub fn toggle_of(command: Command) -> Option<Toggle> {
 pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
     section(ui, "Strategy", |ui| {
         presets(ui, panel);
+        if panel.editor.document.settings.strategy.is_biased() {
+            let text = "Biased: ray marching is on (Advanced).";
+            let text = RichText::new(text).small().color(color::WARNING);
+            ui.add(egui::Label::new(text).wrap()).on_hover_text(key_help("strategy.integrator"));
+        }
         for (toggle, command, key) in TOGGLES {
             ui.add_space(space::TIGHT);
             row_of(ui, panel, toggle, command, key);
@@ -104,7 +109,7 @@ fn presets(ui: &mut Ui, panel: &mut Panel<'_>) {
     let clicked =
         row(ui, "Preset", &key_help("strategy.preset"), |ui| segments(ui, &choices, chosen));
     if let Some(preset) = clicked.inner.and_then(|index| distinct.get(index)) {
-        *strategy = Strategy { advanced: strategy.advanced, ..preset.strategy() };
+        *strategy = strategy.with_toggles_of(*preset);
         panel.editor.name_edit(format!("preset {}", preset.name()));
     }
 }

@@ -1,0 +1,276 @@
+//! The old system, kept for comparison: ray marching, with a table of importance along each ray.
+//!
+//! The medium along a ray is cut into steps. Each is read at one jittered place and taken to be the
+//! same all along, so that with T̂ at its beginning a it brings T̂(a) ε (1 − exp(−μ_t Δ))/μ_t of
+//! emission, and as much of scattering with μ_s in place of ε. The table holds what scatters: a
+//! scattering event's place is drawn from it, p(t) ∝ T̂ μ_s, and where nothing behind the medium
+//! needs to be reached, the ray always scatters. The emission is the sum of all steps: to draw one
+//! of them by its share and to divide by that would bring the very same.
+//!
+//! Biased: each read is one of μ_t at a place drawn from its step, so that τ̂ has mean τ, but by
+//! Jensen's inequality exp(−τ̂) has a larger mean than exp(−τ), by half the variance of τ̂, which
+//! falls with the third power of the step where the medium is smooth. Uniform stretches are one
+//! step, however long, and exact. What is done with the table is unbiased given the table.
+
+use std::ops::ControlFlow;
+
+use super::{
+    emission::{Glow, attenuated},
+    tracking::{Event, Flight, MOST_COLLISIONS, exp_neg, roulette_below},
+    transmittance::GOLDEN,
+};
+use crate::{
+    math::{PathRng, Rgb, Slot, mean},
+    volume::{
+        medium::{Coefficients, Segment},
+        phase::PhaseMix,
+        world::MediumRay,
+    },
+};
+
+/// Below this transmittance a march goes on by chance only.
+const ROULETTE_BELOW: f32 = 1e-3;
+/// What has no voxels has this many to a stretch of one bound.
+const VOXELS_PER_STRETCH: f32 = 4.0;
+
+/// A stretch of the ray that is taken to be the same all along.
+#[derive(Clone, Copy, Debug)]
+struct Step {
+    /// Where it begins.
+    t0: f32,
+    length: f32,
+    /// Where it is read.
+    at: f32,
+    /// The number of its segment.
+    segment: u32,
+    /// Whether anything emits there.
+    glows: bool,
+}
+
+/// Calls `take` for each step along the medium, from near to far, and returns how many there were.
+/// `jitter` places the first read; later ones advance by the golden ratio. A march of
+/// [`MOST_COLLISIONS`] steps is cut.
+fn march(
+    mut medium: MediumRay<'_>,
+    voxels: f32,
+    mut jitter: f32,
+    mut take: impl FnMut(&MediumRay<'_>, &Step) -> ControlFlow<()>,
+) -> u32 {
+    let (mut steps, mut number) = (0, 0);
+    while let Some(segment) = medium.next_segment() {
+        let parts = parts_of(&segment, voxels);
+        let length = (segment.t1 - segment.t0) / parts as f32;
+        for part in 0..parts {
+            let t0 = if part == 0 { segment.t0 } else { segment.t0 + part as f32 * length };
+            let at = if segment.uniform { t0 } else { (t0 + jitter * length).min(segment.t1) };
+            let glows = segment.emission_rate > 0.0;
+            steps += 1;
+            let taken = take(&medium, &Step { t0, length, at, segment: number, glows });
+            if taken.is_break() || steps == MOST_COLLISIONS {
+                return steps;
+            }
+            jitter = (jitter + GOLDEN).fract();
+        }
+        number += 1;
+    }
+    steps
+}
+
+/// How many steps of so many voxels a segment is cut into.
+fn parts_of(segment: &Segment, voxels: f32) -> u32 {
+    let length = segment.t1 - segment.t0;
+    if segment.uniform || !length.is_finite() {
+        return 1;
+    }
+    let voxels_across = match segment.voxel_rate > 0.0 {
+        true => length * segment.voxel_rate,
+        false => VOXELS_PER_STRETCH,
+    };
+    ((voxels_across / voxels).ceil() as u32).max(1)
+}
+
+/// The way marched so far.
+struct Way {
+    transmittance: Rgb,
+    emission: Rgb,
+}
+
+impl Way {
+    fn new() -> Self {
+        Self { transmittance: Rgb::ONE, emission: Rgb::ZERO }
+    }
+
+    /// Passes a step of coefficients `c`.
+    #[inline]
+    fn pass(&mut self, step: &Step, c: &Coefficients, rng: &mut PathRng) -> ControlFlow<()> {
+        if c.emission != Rgb::ZERO {
+            self.emission += self.transmittance * attenuated(c.emission, c.mu_t, step.length);
+        }
+        self.transmittance *= exp_neg(c.mu_t, step.length);
+        roulette_below(&mut self.transmittance, ROULETTE_BELOW, rng)
+    }
+
+    fn glow(&self, collisions: u32) -> Glow {
+        Glow { emission: self.emission, transmittance: self.transmittance, collisions }
+    }
+}
+
+/// The coefficients of a step; ε is read where there is any.
+#[inline]
+fn read(medium: &MediumRay<'_>, step: &Step) -> Coefficients {
+    if step.glows {
+        return medium.coefficients(step.at);
+    }
+    let (mu_t, mu_s) = medium.extinction(step.at);
+    Coefficients { mu_t, mu_s, emission: Rgb::ZERO }
+}
+
+/// Emission and transmittance along a look at a light, by steps of so many voxels.
+pub(super) fn gather(medium: MediumRay<'_>, voxels: f32, rng: &mut PathRng) -> Glow {
+    let mut way = Way::new();
+    let jitter = rng.at(Slot::LightEmission);
+    let steps =
+        march(medium, voxels, jitter, |medium, step| way.pass(step, &read(medium, step), rng));
+    way.glow(steps)
+}
+
+/// Transmittance along a shadow ray, and the number of steps.
+pub(super) fn transmittance(medium: MediumRay<'_>, voxels: f32, rng: &mut PathRng) -> (Rgb, u32) {
+    let mut way = Way::new();
+    let jitter = rng.at(Slot::LightEmission);
+    let steps = march(medium, voxels, jitter, |medium, step| {
+        let mu_t = medium.mu_t(step.at);
+        way.pass(step, &Coefficients { mu_t, ..Coefficients::default() }, rng)
+    });
+    (way.transmittance, steps)
+}
+
+/// The steps of one ray that scatter. Its memory serves all rays of a path.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Table {
+    rows: Vec<Row>,
+    /// The path's throughput over its mean: which channels matter.
+    color: Rgb,
+    /// T̂ of the whole ray.
+    transmittance: Rgb,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Row {
+    step: Step,
+    /// T̂ where it begins.
+    transmittance: Rgb,
+    mu_t: Rgb,
+    mu_s: Rgb,
+    /// Importance of all rows up to the end of this one.
+    sum: f32,
+}
+
+impl Row {
+    /// ∫ T̂ μ_s dt.
+    fn scattered(&self) -> Rgb {
+        self.transmittance * attenuated(self.mu_s, self.mu_t, self.step.length)
+    }
+
+    /// T̂ μ_s, up to a factor, so far behind its beginning.
+    fn density(&self, distance: f32) -> Rgb {
+        // In proportion to the largest, which single precision may hold but not a multiple of.
+        let mu_s = self.mu_s / self.mu_s.max_element();
+        self.transmittance * mu_s * exp_neg(self.mu_t, distance)
+    }
+
+    /// A distance behind its beginning with density ∝ the mean over the channels of
+    /// color · T̂ μ_s: a channel by its share, then an exponential one cut at the end of the step.
+    fn sample(&self, color: Rgb, u: f32) -> f32 {
+        let shares = color * self.scattered();
+        let mut left = u * shares.element_sum();
+        let channel = (0..2).find(|&channel| {
+            let inside = left < shares[channel];
+            if !inside {
+                left -= shares[channel];
+            }
+            inside
+        });
+        let channel = channel.unwrap_or(2);
+        let u = (left / shares[channel]).clamp(0.0, 1.0 - f32::EPSILON);
+        let (mu, length) = (self.mu_t[channel], self.step.length);
+        if mu * length < 1e-4 {
+            return u * length;
+        }
+        (-(u * (-mu * length).exp_m1()).ln_1p() / mu).min(length)
+    }
+}
+
+impl Table {
+    /// Marches along the ray of a path and notes what scatters; emission and transmittance of the
+    /// whole ray are returned.
+    pub(super) fn fill(
+        &mut self,
+        medium: MediumRay<'_>,
+        voxels: f32,
+        throughput: Rgb,
+        rng: &mut PathRng,
+    ) -> Glow {
+        self.rows.clear();
+        self.color = throughput / mean(throughput);
+        let (mut way, mut sum) = (Way::new(), 0.0);
+        let jitter = rng.at(Slot::Emission);
+        let steps = march(medium, voxels, jitter, |medium, step| {
+            let c = read(medium, step);
+            if c.mu_s != Rgb::ZERO {
+                let Coefficients { mu_t, mu_s, .. } = c;
+                let mut row =
+                    Row { step: *step, transmittance: way.transmittance, mu_t, mu_s, sum };
+                sum += mean(self.color * row.scattered());
+                row.sum = sum;
+                self.rows.push(row);
+            }
+            way.pass(step, &c, rng)
+        });
+        self.transmittance = way.transmittance;
+        way.glow(steps)
+    }
+
+    /// Draws how the flight along the ray goes on: by scattering, or to its end if it `goes_on`
+    /// there. `medium` is the one the table was filled from.
+    ///
+    /// Unbiased given the table: with f_c what a place brings to channel c, its density is
+    /// mean (color · f) / Σ, its weight f_c over that.
+    pub(super) fn draw(&self, medium: MediumRay<'_>, goes_on: bool, rng: &mut PathRng) -> Flight {
+        let beyond = if goes_on { self.transmittance } else { Rgb::ZERO };
+        let scattered = self.rows.last().map_or(0.0, |row| row.sum);
+        let reached = mean(self.color * beyond);
+        let total = scattered + reached;
+        let flight = |event, weight| Flight {
+            event,
+            weight,
+            emission: Rgb::ZERO,
+            pdf_null: 0.0,
+            collisions: 0,
+        };
+        if !total.is_finite() {
+            // Leads nowhere, and is counted with the sample it spoils.
+            return flight(Event::Reached, Rgb::splat(total));
+        }
+        let x = rng.at(Slot::Distance) * total;
+        let index = self.rows.partition_point(|row| row.sum <= x);
+        let Some(row) = self.rows.get(index) else {
+            let weight = if reached > 0.0 { total / reached } else { 0.0 };
+            return flight(Event::Reached, beyond * weight);
+        };
+        let before = index.checked_sub(1).map_or(0.0, |last| self.rows[last].sum);
+        let distance = row.sample(self.color, (x - before) / (row.sum - before));
+        let density = row.density(distance);
+        let weight = density / mean(self.color * density) * total;
+        let event = Event::Scattered { t: row.step.t0 + distance, phase: phase(medium, &row.step) };
+        flight(event, weight)
+    }
+}
+
+/// The phase function where a step was read.
+fn phase(mut medium: MediumRay<'_>, step: &Step) -> PhaseMix {
+    for _ in 0..=step.segment {
+        medium.next_segment();
+    }
+    medium.phase(step.at)
+}
