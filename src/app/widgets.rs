@@ -11,8 +11,10 @@ use super::theme::{color, space};
 use crate::scene::keys;
 use crate::scene::settings::Color;
 
-/// Choices that fit beside a label.
-const MOST_IN_A_ROW: usize = 3;
+/// Room beside a label for the names of choices, in letters.
+const ROOM_BESIDE_LABEL: usize = 24;
+/// Letters that the frame of a button takes the room of.
+const LETTERS_OF_FRAME: usize = 2;
 
 /// The help of a key of the scene file, ready for a tooltip.
 pub fn key_help(path: &str) -> String {
@@ -232,7 +234,8 @@ where
         .map(|(name, (_, help))| (name.as_str(), *help))
         .collect();
     let help = key_help(key);
-    let clicked = if choices.len() > MOST_IN_A_ROW {
+    let room: usize = names.iter().map(|name| name.len() + LETTERS_OF_FRAME).sum();
+    let clicked = if room > ROOM_BESIDE_LABEL {
         row_label(ui, name, &help);
         ui.name_inputs(name, |ui| segments_but(ui, &choices, chosen, refused))
     } else {
