@@ -1,8 +1,9 @@
 //! What each strategy brings: variance at equal samples and at equal time, scene by scene.
 //!
-//! `cargo bench --bench noise -- [SCENE ...] [--quick]` prints a table per scene with one row per
-//! strategy; `-- modes` the modes of the majorant boost by their amounts; `-- walks` the estimators
-//! of transmittance and the trackers; `-- --list` the scenes.
+//! `cargo bench --bench noise -- [TABLE] [SCENE ...] [--quick]` prints a table per scene with one
+//! row per strategy: toggle upon toggle, or with `modes` the modes of the majorant boost by their
+//! amounts, with `distances` the ways to choose where a ray scatters, with `walks` the estimators
+//! of transmittance and the trackers. `-- --list` names the scenes.
 //! All of it takes an hour of CPU time, `--quick` some minutes.
 
 mod measure;
@@ -13,19 +14,14 @@ mod table;
 use clap::Parser;
 
 use measure::Plan;
-use rows::Row;
+use rows::{Row, Table};
 use scenes::BenchScene;
-
-/// The word that asks for the table of boost modes.
-const MODES: &str = "modes";
-/// The word that asks for the table of transmittance estimators and trackers.
-const WALKS: &str = "walks";
 
 #[derive(Parser)]
 #[command(name = "noise", about = "Variance and cost of each strategy, scene by scene")]
 struct Arguments {
-    /// Only scenes whose name contains one of these; `modes` for the modes of the majorant boost,
-    /// `walks` for estimators of transmittance and trackers.
+    /// Only scenes whose name contains one of these; `modes`, `distances` or `walks` for another
+    /// table than that of the toggles.
     filters: Vec<String>,
     /// Fewer samples and seeds: figures good to 10 to 20 %.
     #[arg(long)]
@@ -67,26 +63,16 @@ impl Arguments {
 
     /// The scenes and rows that are asked for.
     fn selection(&self) -> Vec<(BenchScene, Vec<Row>)> {
-        let modes = self.filters.iter().any(|filter| filter == MODES);
-        let walks = self.filters.iter().any(|filter| filter == WALKS);
-        let words = [MODES, WALKS];
+        let word = self.filters.iter().find_map(|filter| Table::named(filter));
+        let table = word.unwrap_or(Table::Toggles);
         let filters: Vec<&String> =
-            self.filters.iter().filter(|f| !words.contains(&f.as_str())).collect();
+            self.filters.iter().filter(|filter| Table::named(filter).is_none()).collect();
         let chosen = |scene: &BenchScene| {
-            let all = filters.is_empty()
-                && (scene.compares_modes || !modes)
-                && (scene.has_lamps || !walks);
+            let all = filters.is_empty() && scene.tables.contains(&table);
             all || filters.iter().any(|filter| scene.name.contains(filter.as_str()))
         };
         let named = |row: &Row| self.rows.as_ref().is_none_or(|part| row.name.contains(part));
-        let rows = |scene: &BenchScene| {
-            let all = match () {
-                () if modes => rows::modes(),
-                () if walks => rows::walks(),
-                () => rows::toggles(scene),
-            };
-            all.into_iter().filter(named).collect()
-        };
+        let rows = |scene: &BenchScene| rows::of(table, scene).into_iter().filter(named).collect();
         scenes::all().into_iter().filter(chosen).map(|s| (s, rows(&s))).collect()
     }
 }

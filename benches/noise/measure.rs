@@ -67,7 +67,14 @@ struct Picture {
 }
 
 /// Renders with seed after seed until the variance is known well enough.
-pub fn measure(scene: &Arc<Scene>, plan: &Plan) -> Noise {
+pub fn measure(scene: &Arc<Scene>, plan: &Plan, left_out: Option<([f32; 2], f32)>) -> Noise {
+    let counts: Vec<bool> = (0..SIDE * SIDE)
+        .map(|index| {
+            left_out.is_none_or(|(center, radius)| {
+                pixel(index).as_vec2().distance(center.into()) > radius
+            })
+        })
+        .collect();
     let render = if plan.film { with_film } else { bare };
     // What is first touched or learned by the first picture is no part of the steady state.
     render(scene, u64::MAX, plan.spp.min(4));
@@ -81,7 +88,7 @@ pub fn measure(scene: &Arc<Scene>, plan: &Plan) -> Noise {
         if pictures.len() < SEEDS[0] {
             continue;
         }
-        let [variance, variance_error] = variance(&pictures);
+        let [variance, variance_error] = variance(&pictures, &counts);
         let enough = variance_error <= plan.error || spent >= plan.budget;
         if enough || pictures.len() == SEEDS[1] {
             let [mean, mean_error] = mean_with_error(pictures.iter().map(|p| mean_of(p)));
@@ -99,17 +106,19 @@ pub fn measure(scene: &Arc<Scene>, plan: &Plan) -> Noise {
     }
 }
 
-/// Mean over the pixels of the variance between pictures, and its relative standard error. Each
+/// Mean over the pixels that count of the variance between pictures, and its relative standard error. Each
 /// picture's squared distance from the mean picture is one estimate of it; they are nearly
 /// independent of each other, and pixels that share their noise do no harm.
-fn variance(pictures: &[Vec<f64>]) -> [f64; 2] {
+fn variance(pictures: &[Vec<f64>], counts: &[bool]) -> [f64; 2] {
+    let counted = counts.iter().filter(|counts| **counts).count() as f64;
     let k = pictures.len() as f64;
     let mean: Vec<f64> = (0..pictures[0].len())
         .map(|i| pictures.iter().map(|picture| picture[i]).sum::<f64>() / k)
         .collect();
     mean_with_error(pictures.iter().map(|picture| {
-        let squares = picture.iter().zip(&mean).map(|(value, mean)| (value - mean).powi(2));
-        squares.sum::<f64>() / mean.len() as f64 * k / (k - 1.0)
+        let pixels = picture.iter().zip(&mean).zip(counts).filter(|(_, counts)| **counts);
+        let squares = pixels.map(|((value, mean), _)| (value - mean).powi(2));
+        squares.sum::<f64>() / counted * k / (k - 1.0)
     }))
 }
 

@@ -1,11 +1,46 @@
 //! The strategies that are compared.
 
 use flambeau::transport::strategy::{
-    Advanced, BoostMode, Integrator, LightSelection, NeeEvaluation, Preset, Strategy, Tracker,
-    TransmittanceEstimator,
+    Advanced, BoostMode, Distance, Integrator, LightSelection, NeeEvaluation, Preset,
+    ScatterProbability, Strategy, Tracker, TransmittanceEstimator,
 };
 
 use super::scenes::BenchScene;
+
+/// What is compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Table {
+    /// Toggle upon toggle.
+    Toggles,
+    /// Modes of the majorant boost by their amounts.
+    Modes,
+    /// Where rays scatter: by chance, by probes, by both.
+    Distances,
+    /// Estimators of transmittance, and trackers.
+    Walks,
+}
+
+impl Table {
+    /// The table that a word of the command line asks for.
+    pub fn named(word: &str) -> Option<Self> {
+        match word {
+            "modes" => Some(Self::Modes),
+            "distances" => Some(Self::Distances),
+            "walks" => Some(Self::Walks),
+            _ => None,
+        }
+    }
+}
+
+/// The rows of a table for a scene.
+pub fn of(table: Table, scene: &BenchScene) -> Vec<Row> {
+    match table {
+        Table::Toggles => toggles(scene),
+        Table::Modes => modes(),
+        Table::Distances => distances(),
+        Table::Walks => walks(),
+    }
+}
 
 /// A row of a table.
 pub struct Row {
@@ -28,7 +63,7 @@ const MODES: [(BoostMode, &str); 4] = [
 const AMOUNTS: [f32; 5] = [0.25, 1.0, 4.0, 16.0, 64.0];
 
 /// Toggle upon toggle, from none to all, then all but one of the finer choices, then the old system.
-pub fn toggles(scene: &BenchScene) -> Vec<Row> {
+fn toggles(scene: &BenchScene) -> Vec<Row> {
     let baseline = Preset::Baseline.strategy();
     let decoupling = Strategy { emission_decoupling: true, ..baseline };
     let ratio = Strategy { emission_ratio_tracking: true, ..decoupling };
@@ -47,11 +82,11 @@ pub fn toggles(scene: &BenchScene) -> Vec<Row> {
         row("+ ratio tracking", ratio),
     ];
     rows.extend(MODES.map(|(mode, name)| row(&format!("+ boost, {name}"), boosted(mode))));
-    rows.push(row(
-        "+ nee, point",
-        full_but(Advanced { nee_evaluation: NeeEvaluation::Point, ..default }),
-    ));
-    rows.push(row("+ nee, line = full", full));
+    let emission = Preset::Emission.strategy();
+    let point = Advanced { nee_evaluation: NeeEvaluation::Point, ..default };
+    rows.push(row("+ nee, point", Strategy { advanced: point, ..emission }));
+    rows.push(row("+ nee, line", emission));
+    rows.push(row("+ probes = full", full));
     if scene.many_lights {
         let uniform = Advanced { light_selection: LightSelection::Uniform, ..default };
         rows.push(row("full, lights uniform", full_but(uniform)));
@@ -65,7 +100,7 @@ pub fn toggles(scene: &BenchScene) -> Vec<Row> {
 }
 
 /// Every mode of the boost at every amount, all else as in `full`.
-pub fn modes() -> Vec<Row> {
+fn modes() -> Vec<Row> {
     let full = Preset::Full.strategy();
     let mut rows = vec![row("unboosted", Strategy { majorant_boost: false, ..full })];
     for (boost_mode, name) in MODES {
@@ -77,9 +112,29 @@ pub fn modes() -> Vec<Row> {
     rows
 }
 
+/// Distances by chance, by the probes, by both; then without or with more of what else guides.
+fn distances() -> Vec<Row> {
+    let full = Preset::Full.strategy();
+    let but = |name, change: fn(&mut Advanced)| {
+        let mut strategy = full;
+        change(&mut strategy.advanced);
+        row(name, strategy)
+    };
+    vec![
+        row("null", Preset::Emission.strategy()),
+        but("probes alone", |a| a.distance = Distance::Probes),
+        but("mis", |_| ()),
+        but("mis, all rays alike", |a| a.scatter_probability = ScatterProbability::Even),
+        but("mis, no equal angles", |a| a.equiangular = false),
+        but("mis, directions unguided", |a| a.guide_directions = false),
+        but("mis, bounces guided", |a| a.guide_all_vertices = true),
+        row("old system, biased", Strategy { integrator: Integrator::March, ..full }),
+    ]
+}
+
 /// The estimators of transmittance, then the trackers. Without the probes, whose noise is another
 /// matter and which not every tracker knows.
-pub fn walks() -> Vec<Row> {
+fn walks() -> Vec<Row> {
     let plain = Preset::Emission.strategy();
     let estimators = [
         (TransmittanceEstimator::Ratio, "transmittance ratio"),

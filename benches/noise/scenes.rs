@@ -8,6 +8,8 @@ use flambeau::{
     transport::Scene,
 };
 
+use super::rows::Table;
+
 /// A scene of the tables.
 #[derive(Clone, Copy)]
 pub struct BenchScene {
@@ -15,12 +17,13 @@ pub struct BenchScene {
     pub name: &'static str,
     /// What it is there for.
     pub shows: &'static str,
-    /// Whether it is one of those that boost modes are compared on.
-    pub compares_modes: bool,
+    /// The tables it is in.
+    pub tables: &'static [Table],
     /// Whether choosing among lights matters in it.
     pub many_lights: bool,
-    /// Whether it is one of those that estimators and trackers are compared on.
-    pub has_lamps: bool,
+    /// A circle of pixels, center and radius, that is left out of the variance: where a light is
+    /// seen directly, hit or miss drowns what the scene is about.
+    pub left_out: Option<([f32; 2], f32)>,
     file: &'static str,
     folder: Folder,
     set: &'static [&'static str],
@@ -44,36 +47,34 @@ pub fn all() -> Vec<BenchScene> {
         shows,
         file,
         folder: Folder::Own,
-        compares_modes: false,
+        tables: &[Table::Toggles],
         many_lights: false,
-        has_lamps: false,
+        left_out: None,
         set: &[],
     };
-    let lamps =
-        |name, shows, set| BenchScene { has_lamps: true, set, ..own(name, shows, "lamps.toml") };
+    let modes = |scene| BenchScene { tables: &[Table::Toggles, Table::Modes], ..scene };
+    let lamps = |name, shows, set| BenchScene {
+        tables: &[Table::Walks, Table::Distances],
+        set,
+        ..own(name, shows, "lamps.toml")
+    };
     let peers = |name, shows, file| BenchScene { folder: Folder::Peers, ..own(name, shows, file) };
+    let embedded = |name, shows, set| BenchScene {
+        tables: &[Table::Distances],
+        left_out: Some(([68.4, 68.2], 6.0)),
+        set,
+        ..peers(name, shows, "embedded.toml")
+    };
     vec![
-        BenchScene {
-            compares_modes: true,
-            ..peers("fire_absorb", "a flame that only absorbs", "fire_absorb.toml")
-        },
+        modes(peers("fire_absorb", "a flame that only absorbs", "fire_absorb.toml")),
         peers("fire_on_floor", "a flame, a floor, a glossy sphere", "fire_on_floor.toml"),
-        BenchScene {
-            compares_modes: true,
-            ..own("thin_fire", "fire with hardly any soot", "thin_fire.toml")
-        },
-        BenchScene {
-            compares_modes: true,
-            ..own("behind_smoke_4", "fire behind smoke of optical depth 4", "behind_smoke.toml")
-        },
+        modes(own("thin_fire", "fire with hardly any soot", "thin_fire.toml")),
+        modes(own("behind_smoke_4", "fire behind smoke of optical depth 4", "behind_smoke.toml")),
         BenchScene {
             set: &["volume.1.density.scale=20.0"],
             ..own("behind_smoke_10", "fire behind smoke of optical depth 10", "behind_smoke.toml")
         },
-        BenchScene {
-            compares_modes: true,
-            ..own("floor_glossy", "fire on a floor, a rough glossy sphere", "floor_glossy.toml")
-        },
+        modes(own("floor_glossy", "fire on a floor, a rough glossy sphere", "floor_glossy.toml")),
         own("fog", "fire in thin fog that fills all of space", "fog.toml"),
         BenchScene {
             many_lights: true,
@@ -83,6 +84,18 @@ pub fn all() -> Vec<BenchScene> {
         BenchScene {
             many_lights: true,
             ..own("rooms", "200 torches between walls, in thin fog", "rooms.toml")
+        },
+        embedded("embedded_1", "a lamp inside of a puff", &["volume.0.density.scale=1.0"]),
+        embedded("embedded_3", "the same, three times as dense", &["volume.0.density.scale=3.0"]),
+        embedded("embedded_10", "the same, ten times", &["volume.0.density.scale=10.0"]),
+        embedded("embedded_30", "the same, thirty times", &["volume.0.density.scale=30.0"]),
+        BenchScene {
+            tables: &[Table::Distances],
+            ..own("cloud", "a cloud under an even sky", "cloud.toml")
+        },
+        BenchScene {
+            tables: &[Table::Distances],
+            ..own("shafts", "sun and spot through gaps into uneven mist", "shafts.toml")
         },
         own("no_soot", "fire without extinction, on a floor", "no_soot.toml"),
         own("chromatic_smoke", "smoke that colors what shines through", "chromatic_smoke.toml"),

@@ -51,10 +51,10 @@ pub fn print(scene: &BenchScene, built: &Scene, rows: &[Row], plan: &Plan) {
     println!("\n## {}: {}\n", scene.name, scene.shows);
     print_cells(&COLUMNS.map(|(name, _)| name.to_owned()));
     println!("|---{}|", "|--:".repeat(COLUMNS.len() - 1));
-    let mut first = None;
+    let (mut first, left_out) = (None, scene.left_out);
     for row in rows {
         let scene = Arc::new(Scene { strategy: row.strategy, ..built.clone() });
-        let noise = measure::measure(&scene, plan);
+        let noise = measure::measure(&scene, plan, left_out);
         let first = first.get_or_insert([noise.variance, noise.efficiency()]);
         print_cells(&cells(row, &noise, *first));
     }
