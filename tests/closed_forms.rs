@@ -4,7 +4,7 @@ mod common;
 
 use common::{
     Estimate, Verdicts, boost_modes, build, few_guides, full_name, half_of_strategies, measure,
-    measure_with, name, with_strategy,
+    measure_enough, measure_with, name, with_strategy,
 };
 use flambeau::{
     math::Rgb,
@@ -192,7 +192,7 @@ fn optimal_majorant() {
             let advanced =
                 Advanced { boost_mode: BoostMode::Optimal, boost_amount, ..Advanced::default() };
             let strategy = Strategy { advanced, ..Strategy::default() };
-            let estimate = measure(&with_strategy(&scene, strategy), 300_000);
+            let estimate = measure_enough(&with_strategy(&scene, strategy), 300_000);
             for (channel, expected) in expected.into_iter().enumerate() {
                 let label = format!("{case}, channel {channel}, amount {boost_amount}");
                 verdicts.check_channel(&label, &estimate, channel, expected);

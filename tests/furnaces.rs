@@ -5,7 +5,7 @@ mod common;
 
 use common::{
     Verdicts, all_strategies, build, every_guide, every_line_setting, full_name,
-    half_of_strategies, measure, name, with_strategy,
+    half_of_strategies, measure, measure_enough, name, with_strategy,
 };
 
 use flambeau::transport::strategy::{NeeEvaluation, Strategy};
@@ -48,7 +48,7 @@ fn check_everywhere(text: &str, paths: u32, expected: f64) {
     let scene = build(text);
     let mut verdicts = Verdicts::default();
     for strategy in all_strategies() {
-        let estimate = measure(&with_strategy(&scene, strategy), paths);
+        let estimate = measure_enough(&with_strategy(&scene, strategy), 8 * paths);
         for channel in 0..3 {
             verdicts.check_channel(&name(&strategy), &estimate, channel, expected);
         }
@@ -171,7 +171,7 @@ fn a_fire_in_a_world_full_of_glowing_fog() {
     point.advanced.nee_evaluation = NeeEvaluation::Point;
     let settings = every_line_setting().into_iter().filter(|setting| setting.nee);
     for setting in settings.chain([point]) {
-        let estimate = measure(&with_strategy(&scene, setting), 100_000);
+        let estimate = measure_enough(&with_strategy(&scene, setting), 800_000);
         for channel in 0..3 {
             verdicts.check_channel(&full_name(&setting), &estimate, channel, 3.0);
         }
@@ -205,7 +205,7 @@ fn an_emissive_box_inside_an_absorber() {
     let scene = build(text);
     let mut verdicts = Verdicts::default();
     for strategy in half_of_strategies() {
-        let estimate = measure(&with_strategy(&scene, strategy), 1_500_000);
+        let estimate = measure_enough(&with_strategy(&scene, strategy), 1_500_000);
         verdicts.check(&name(&strategy), &estimate, expected);
     }
     verdicts.finish();
@@ -283,7 +283,7 @@ fn fog_that_is_clear_to_a_channel() {
     let scene = build(&text);
     let mut verdicts = Verdicts::default();
     for strategy in half_of_strategies() {
-        let estimate = measure(&with_strategy(&scene, strategy), 400_000);
+        let estimate = measure_enough(&with_strategy(&scene, strategy), 400_000);
         for (channel, expected) in [2.0, 2.0, 1.0].into_iter().enumerate() {
             verdicts.check_channel(&name(&strategy), &estimate, channel, expected);
         }

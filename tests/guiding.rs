@@ -4,7 +4,7 @@ mod common;
 
 use common::{
     Verdicts, build, every_guide, few_guides, full_name, half_of_strategies, measure,
-    measure_one_after_another, measure_with, with_strategy,
+    measure_enough, measure_one_after_another, measure_with, with_strategy,
 };
 use flambeau::transport::{
     Scene,
@@ -64,7 +64,7 @@ fn guides_agree(text: &str, settings: Vec<Strategy>, paths: u32) {
     let reference = measure(&with_strategy(&scene, unguided), 4 * paths);
     let mut verdicts = Verdicts::default();
     for strategy in settings {
-        let estimate = measure(&with_strategy(&scene, strategy), paths);
+        let estimate = measure_enough(&with_strategy(&scene, strategy), paths);
         let label = full_name(&strategy);
         for channel in 0..3 {
             verdicts.check_equal(&label, &estimate, &reference, channel);
@@ -95,12 +95,13 @@ fn guides_agree_over_a_floor_in_haze() {
     guides_agree(&text, few_guides(), 400_000);
 }
 
-/// With the toggles for emission, whose walks share the medium with the guided ones.
+/// With the toggles for emission, whose walks share the medium with the guided ones; not without
+/// both looks at fire and a walk for its glow, which find this small fire too rarely to tell.
 #[test]
 fn guides_agree_whatever_else_is_on() {
-    let guided = half_of_strategies().into_iter().filter(|strategy| strategy.probe_mis);
+    let found = |s: &Strategy| s.probe_mis && (s.nee || s.emission_ratio_tracking);
     let text = EMBEDDED.replace("SCALE", "1.5") + HAZE;
-    guides_agree(&text, guided.collect(), 2_000_000);
+    guides_agree(&text, half_of_strategies().into_iter().filter(found).collect(), 800_000);
 }
 
 /// Of a ray's first scattering event alone: probes without chance are as good as chance wherever
@@ -236,11 +237,14 @@ fn lines_cover_what_scatters() {
 }
 
 /// More probes are placed where more light is scattered, about as many as were asked for, and the
-/// light of a lamp is felt along a ray that passes it. Behind the lamp, that is: in front of it
-/// smoke that scatters forward is bright as well.
+/// light of a lamp is felt along a ray that passes it. More than behind the lamp, that is: in front
+/// of it smoke that scatters forward is bright as well.
 #[test]
 fn probes_know_where_the_lamp_is() {
-    let text = EMBEDDED.replace("SCALE", "0.4");
+    let text = EMBEDDED
+        .replace("SCALE", "0.4")
+        .replace(r#"shape = "noise""#, r#"shape = "box""#)
+        .replace("frequency = 1.5\n    contrast = 2.0\n", "");
     for count in [500, 4000] {
         let (scene, probes) = probes(&text, count);
         let probes = probes.unwrap();

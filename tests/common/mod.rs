@@ -296,6 +296,25 @@ pub fn measure(scene: &Scene, paths: u32) -> Estimate {
     measure_with(scene, paths, PathSample::beauty)
 }
 
+/// The mean radiance over the whole film, of so many paths as bring its standard error to
+/// [`POWER`], and `most` at most. How many that is, a first few of them tell by their variance.
+pub fn measure_enough(scene: &Scene, most: u32) -> Estimate {
+    const MARGIN: f64 = 0.7;
+    let reached = |estimate: &Estimate| {
+        let relative = |channel: usize| estimate.error(channel) / estimate.mean[channel].abs();
+        let worst = (0..3).map(relative).fold(0.0, f64::max) / POWER;
+        if worst.is_finite() { worst } else { f64::INFINITY }
+    };
+    let few = (most / 16).max(16 * SIDE * SIDE).min(most);
+    let first = measure(scene, few);
+    let wanted = f64::from(few) * (reached(&first) / MARGIN).powi(2);
+    if wanted <= f64::from(few) {
+        return first;
+    }
+    let enough = measure(scene, wanted.min(f64::from(most)) as u32);
+    if reached(&enough) > 1.0 && wanted < f64::from(most) { measure(scene, most) } else { enough }
+}
+
 /// Comparisons gathered, so that one run shows all that fail.
 pub struct Verdicts {
     failures: Vec<String>,
