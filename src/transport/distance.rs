@@ -12,7 +12,7 @@
 use glam::Vec3A;
 
 use super::{
-    probes::Line,
+    probes::{Brightness, Line},
     strategy::{Distance, ScatterProbability, Strategy, Tracker},
     tracking::{self, Event, Flight},
 };
@@ -89,13 +89,13 @@ impl Sharing {
     /// How many guided flights pay, where the guides are those of `line`. The noise of a pixel is
     /// about in proportion to its light, so that the picture's falls fastest for the same effort
     /// where each gets flights in that proportion; fewer where an unguided one finds all the light
-    /// as well, as in a cloud; and some at least. `mean_light` is the radiance scattered into rays
-    /// from the camera on average.
-    pub(super) fn new(strategy: &Strategy, line: Option<&Line>, mean_light: f32) -> Self {
+    /// as well, as in a cloud, or where the noise is that of surfaces; and some at least.
+    pub(super) fn new(strategy: &Strategy, line: Option<&Line>, film: &Brightness) -> Self {
         let alone = strategy.advanced.distance == Distance::Probes;
         let Some(line) = line else { return Self { flights: 1.0, alone } };
-        let least = if alone { 1.0 } else { line.transmittance().max(LEAST_FLIGHTS) };
-        let wanted = line.light() / mean_light * (line.missed() / MUCH_MISSED).min(1.0);
+        let least = if alone { 1.0 } else { film.share * line.transmittance().max(LEAST_FLIGHTS) };
+        let relative = film.share * (line.light() / film.scattered);
+        let wanted = relative * (line.missed() / MUCH_MISSED).min(1.0);
         let flights = match strategy.advanced.scatter_probability {
             ScatterProbability::Light if wanted.is_finite() => wanted.clamp(least, MOST_FLIGHTS),
             _ => least,
@@ -183,14 +183,13 @@ pub(super) struct Fan<'g> {
 }
 
 impl<'g> Fan<'g> {
-    /// `mean_light` is the radiance scattered into rays from the camera on average.
     pub(super) fn new(
         strategy: &Strategy,
         guide: &'g Guide,
-        mean_light: f32,
+        film: Brightness,
         rng: &mut PathRng,
     ) -> Self {
-        let sharing = Sharing::new(strategy, guide.line.as_ref(), mean_light);
+        let sharing = Sharing::new(strategy, guide.line.as_ref(), &film);
         let whole = sharing.flights.floor();
         let more = sharing.flights > whole && rng.uniform() < sharing.flights - whole;
         let count = whole as u32 + u32::from(more);

@@ -29,7 +29,7 @@ use crate::math::{PathRng, Rgb, Slot};
 use emission::Gatherer;
 use observer::{Nobody, Observer};
 use path::Aids;
-use probes::Probes;
+use probes::{Brightness, Probes};
 
 /// What one path brought to its pixel: four parts that sum to the beauty, and what else is kept.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -75,8 +75,8 @@ pub struct Frame {
     gatherer: Gatherer,
     /// Those of the scene.
     probes: Option<Arc<Probes>>,
-    /// Radiance scattered into the rays of the camera on average, as the probes think.
-    mean_light: f32,
+    /// What the probes think of the film.
+    brightness: Brightness,
 }
 
 impl Frame {
@@ -97,8 +97,9 @@ impl Frame {
         probes: Option<Arc<Probes>>,
     ) -> Self {
         let gatherer = Gatherer::new(&scene, size);
-        let mean_light = probes.as_ref().map_or(0.0, |probes| probes.mean_light(&scene, size));
-        Self { scene, size, seed, gatherer, probes, mean_light }
+        let brightness =
+            probes.as_ref().map(|probes| Brightness::new(probes, &scene, size)).unwrap_or_default();
+        Self { scene, size, seed, gatherer, probes, brightness }
     }
 
     /// Pixels across and down.
@@ -116,7 +117,7 @@ impl Frame {
         let offset = Vec2::new(rng.at(Slot::PixelX), rng.at(Slot::PixelY));
         let ray = self.scene.camera.ray(self.size, pixel, offset);
         let probes = self.probes.as_deref();
-        let aids = Aids { gatherer: &self.gatherer, probes, mean_light: self.mean_light };
+        let aids = Aids { gatherer: &self.gatherer, probes, brightness: self.brightness };
         path::trace(&self.scene, aids, ray, &mut rng, observer)
     }
 }

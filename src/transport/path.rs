@@ -17,7 +17,7 @@ use super::{
     emission::{Errand, Gatherer, Glow},
     march,
     observer::{Observer, Step},
-    probes::Probes,
+    probes::{Brightness, Probes},
     scene::Scene,
     strategy::Strategy,
     tracking::{self, Event, Flight},
@@ -27,7 +27,7 @@ use crate::{
     light::{Choice, Receiver},
     math::{PathRng, Ray, Rgb, mean},
     sampling::{equiangular::Equiangular, halo::Halo},
-    surface::{self, Bsdf, Intersection},
+    surface::{self, Intersection},
     volume::world::MediumRay,
 };
 
@@ -50,8 +50,8 @@ pub struct Aids<'s> {
     pub gatherer: &'s Gatherer,
     /// What says where scattering pays and which light to look at, as far as that is asked for.
     pub probes: Option<&'s Probes>,
-    /// Radiance that the medium scatters into the rays of the camera on average, as the probes think.
-    pub mean_light: f32,
+    /// What the probes think of the film.
+    pub brightness: Brightness,
 }
 
 impl<'s> Aids<'s> {
@@ -199,7 +199,7 @@ impl Path<'_> {
                     let radiance = direct::at_the_end(self.scene, &self.ray, end, departure);
                     self.gather_end(radiance, observer);
                 }
-                end.and_then(|end| reflecting(end, &self.ray))
+                end.and_then(|end| Vertex::reflecting(end, &self.ray))
             }
         }
     }
@@ -237,7 +237,7 @@ impl Path<'_> {
         observer: &mut impl Observer,
     ) -> Flight {
         let strategy = &self.scene.strategy;
-        let fan = Fan::new(strategy, guide, self.aids.mean_light, rng);
+        let fan = Fan::new(strategy, guide, self.aids.brightness, rng);
         for (index, t) in fan.distances().enumerate() {
             let flight = fan.guided(medium.clone(), strategy, t, self.throughput, rng);
             self.follow(flight, index == 0, rng, observer);
@@ -449,10 +449,4 @@ impl Path<'_> {
 /// Whether a path goes on from the end of its ray.
 fn goes_on(end: Option<&Intersection>) -> bool {
     end.is_some_and(|end| end.surface.reflects())
-}
-
-/// The vertex on the surface at the end of `ray`; `None` on black ones.
-fn reflecting(end: &Intersection, ray: &Ray) -> Option<Vertex> {
-    let bsdf = || Bsdf::new(end.surface.material, end.hit.normal, -ray.direction);
-    end.surface.reflects().then(|| Vertex::surface(&end.hit, bsdf()))
 }

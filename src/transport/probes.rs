@@ -9,6 +9,7 @@
 //! They guide and no more: whatever they say, the picture's mean stays, as long as no sample
 //! changes what guides it.
 
+mod brightness;
 mod halo;
 mod line;
 mod octree;
@@ -16,7 +17,7 @@ mod probe;
 mod scores;
 mod view;
 
-use glam::{UVec2, Vec2, Vec3A};
+use glam::{UVec2, Vec3A};
 use rayon::prelude::*;
 
 use super::{
@@ -27,9 +28,9 @@ use super::{
 use crate::{
     light::Scores,
     math::{Aabb, PathRng, Ray, mean},
-    surface,
     volume::{medium::Segment, world::MediumRay},
 };
+pub use brightness::Brightness;
 pub use line::Line;
 use line::{LineBuilder, Stretch};
 use octree::{Octree, child_of};
@@ -43,8 +44,6 @@ const OUTSIDE: f32 = 0.05;
 /// Share of the directions that go towards the glow around the lights if all of their light is
 /// scattered.
 const MOST_HALO: f32 = 0.5;
-/// Side of the grid of camera rays that the mean light of a film is taken from.
-const MEAN_SIDE: u32 = 24;
 /// Transmittance below which a line asks the probes no more.
 const DARK: f32 = 1e-4;
 /// Fixed, with numbers that no picture is likely to use.
@@ -265,22 +264,6 @@ impl Probes {
             }
         }
         line.finish()
-    }
-
-    /// Radiance that the medium scatters into the rays of the camera, the mean over a film of `size`
-    /// pixels as the probes think.
-    pub fn mean_light(&self, scene: &Scene, size: UVec2) -> f32 {
-        let light: f32 = (0..MEAN_SIDE * MEAN_SIDE)
-            .map(|i| {
-                let cell = UVec2::new(i % MEAN_SIDE, i / MEAN_SIDE).as_vec2() + Vec2::splat(0.5);
-                let place = cell / MEAN_SIDE as f32 * size.as_vec2();
-                let ray = scene.camera.ray(size, place.as_uvec2(), place.fract());
-                let end = surface::intersect(&scene.surfaces, &ray);
-                let t_max = end.map_or(f32::INFINITY, |end| end.hit.t);
-                self.along(scene.world.along(ray, t_max), &ray).map_or(0.0, |line| line.light())
-            })
-            .sum();
-        light / (MEAN_SIDE * MEAN_SIDE) as f32
     }
 
     fn radiance(&self, leaf: Option<u32>, ray: &Ray) -> f32 {

@@ -6,7 +6,7 @@ use glam::UVec2;
 use super::{
     direct,
     distance::{self, Sharing},
-    probes::{Line, Probes},
+    probes::{Brightness, Line, Probes},
     scene::Scene,
     tracking::{Gather, exp_neg},
 };
@@ -92,8 +92,8 @@ impl Profile {
         let guides = probes.filter(|_| scene.strategy.guides());
         let guided = guides.is_some_and(|probes| {
             let line = probes.along(medium, ray);
-            let mean_light = probes.mean_light(scene, size);
-            let sharing = Sharing::new(&scene.strategy, line.as_ref(), mean_light);
+            let brightness = Brightness::new(probes, scene, size);
+            let sharing = Sharing::new(&scene.strategy, line.as_ref(), &brightness);
             let lights = match scene.strategy.advanced.equiangular {
                 true => points_of_light(scene, probes, ray, [t0, end]),
                 false => Vec::new(),

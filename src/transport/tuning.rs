@@ -11,6 +11,7 @@ use super::{
     emission::{Errand, Gatherer},
     observer::Nobody,
     path::{self, Aids},
+    probes::Brightness,
     scene::Scene,
 };
 use crate::{
@@ -165,7 +166,11 @@ impl<'s> Site<'s> {
     /// What a path along ray `number` brings, and its steps.
     fn path(&self, looks: f32, number: u32) -> (f64, u32) {
         let mut rng = PathRng::new(SEED, self.pixel, u32::MAX - 8 - number);
-        let aids = Aids { gatherer: &Gatherer::optimal(looks), probes: None, mean_light: 0.0 };
+        let aids = Aids {
+            gatherer: &Gatherer::optimal(looks),
+            probes: None,
+            brightness: Brightness::default(),
+        };
         let ray = self.rays[number as usize];
         let sample = path::trace(self.scene, aids, ray, &mut rng, &mut Nobody);
         (f64::from(luminance(sample.beauty())), sample.tracking_steps)
@@ -220,7 +225,11 @@ mod tests {
     /// Variance of independent samples times their cost, over the whole film.
     fn variance_times_cost(scene: &Scene, looks: f32) -> f64 {
         const SAMPLES: u32 = 64;
-        let aids = Aids { gatherer: &Gatherer::optimal(looks), probes: None, mean_light: 0.0 };
+        let aids = Aids {
+            gatherer: &Gatherer::optimal(looks),
+            probes: None,
+            brightness: Brightness::default(),
+        };
         let (mut variance, mut steps) = (0.0, 0.0);
         for i in 0..SIZE.element_product() {
             let pixel = UVec2::new(i % SIZE.x, i / SIZE.x);

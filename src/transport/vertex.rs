@@ -9,7 +9,7 @@ use crate::{
     light::Receiver,
     math::{PathRng, Ray, Rgb, Slot, mean},
     sampling::halo::Halo,
-    surface::{Bsdf, Hit},
+    surface::{Bsdf, Hit, Intersection},
     volume::phase::PhaseMix,
 };
 
@@ -42,6 +42,12 @@ pub struct Turn {
 }
 
 impl Vertex {
+    /// On the surface at the end of `ray`; `None` on black ones.
+    pub fn reflecting(end: &Intersection, ray: &Ray) -> Option<Self> {
+        let bsdf = || Bsdf::new(end.surface.material, end.hit.normal, -ray.direction);
+        end.surface.reflects().then(|| Self::surface(&end.hit, bsdf()))
+    }
+
     /// A scattering event of a path that came along the unit `forward`.
     pub fn volume(position: Vec3A, forward: Vec3A, phase: PhaseMix) -> Self {
         Self { position, kind: Kind::Volume { phase, forward } }
