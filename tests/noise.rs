@@ -9,7 +9,7 @@ use common::{Z_LIMIT, build, with_strategy};
 use flambeau::{
     math::ACCUMULATORS,
     render::{Film, estimate::PixelEstimate},
-    transport::{Frame, PixelSampler, Scene, strategy::Strategy},
+    transport::{Frame, PixelSampler, Scene, probes::Probes, strategy::Strategy},
 };
 use glam::UVec2;
 use rayon::prelude::*;
@@ -49,14 +49,16 @@ const SCENE: &str = r#"
 /// For every pixel: the mean over seeds of the variance that the accumulators give for the mean of
 /// `samples` samples, and the variance of that mean between seeds.
 fn variances(scene: &Scene, samples: u32) -> Vec<[f64; 2]> {
-    let scene = Arc::new(scene.clone());
+    let (scene, size) = (Arc::new(scene.clone()), UVec2::splat(SIDE));
+    let probes = Probes::new(&scene).map(Arc::new);
+    let frame = |seed| Frame::with_probes(scene.clone(), size, seed, probes.clone());
+    let frames: Vec<Frame> = (0..SEEDS).map(frame).collect();
     (0..SIDE * SIDE)
         .into_par_iter()
         .map(|i| {
             let pixel = UVec2::new(i % SIDE, i / SIDE);
             let (mut within, mut means) = (0.0, Vec::new());
-            for seed in 0..SEEDS {
-                let frame = Frame::new(scene.clone(), UVec2::splat(SIDE), seed);
+            for frame in &frames {
                 let mut film = Film::new(UVec2::ONE).unwrap();
                 (0..samples).for_each(|s| film.add(UVec2::ZERO, &frame.sample(pixel, s)));
                 let estimate = PixelEstimate::of(&film, UVec2::ZERO).unwrap();

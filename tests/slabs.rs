@@ -8,8 +8,8 @@
 mod common;
 
 use common::{
-    Verdicts, build, every_guide, every_line_setting, full_name, half_of_strategies, measure, name,
-    with_strategy,
+    Verdicts, build, every_guide, every_line_setting, full_name, half_of_strategies, measure,
+    measure_enough, name, with_strategy,
 };
 use flambeau::transport::strategy::{Preset, Strategy};
 
@@ -96,7 +96,8 @@ fn transmittance_by_every_guide() {
         let scene = build(&slab(g, albedo, depth, &black_plane(3.0)));
         for strategy in every_guide() {
             let label = format!("T of g {g}, albedo {albedo}, {}", full_name(&strategy));
-            let estimate = measure(&with_strategy(&scene, strategy), paths_for(t, &strategy) / 3);
+            let estimate =
+                measure_enough(&with_strategy(&scene, strategy), paths_for(t, &strategy));
             verdicts.check(&label, &estimate, t);
         }
     }
@@ -113,8 +114,10 @@ fn emissivity_in_every_combination_of_toggles() {
         let scene = build(&slab(g, albedo, depth, r#"emission = { mode = "source", le = 1.0 }"#));
         for strategy in half_of_strategies() {
             let label = format!("ε of g {g}, albedo {albedo}, depth {depth}, {}", name(&strategy));
-            let estimate =
-                measure(&with_strategy(&scene, strategy), paths_for(emissivity, &strategy));
+            let estimate = measure_enough(
+                &with_strategy(&scene, strategy),
+                3 * paths_for(emissivity, &strategy),
+            );
             verdicts.check(&label, &estimate, emissivity);
         }
     }
@@ -151,7 +154,7 @@ fn emissivity_channel_by_channel() {
     ));
     let mut verdicts = Verdicts::default();
     for setting in every_line_setting().into_iter().filter(|setting| setting.nee) {
-        let estimate = measure(&with_strategy(&scene, setting), 190_000);
+        let estimate = measure_enough(&with_strategy(&scene, setting), 1_000_000);
         for (channel, expected) in expected.into_iter().enumerate() {
             verdicts.check_channel(&full_name(&setting), &estimate, channel, expected);
         }
@@ -170,7 +173,7 @@ fn half_spaces() {
             let label = format!("half space of albedo {albedo}, {preset}");
             verdicts.check(
                 &label,
-                &measure(&scene, paths_for(expected, &scene.strategy)),
+                &measure_enough(&scene, 8 * paths_for(expected, &scene.strategy)),
                 expected,
             );
         }

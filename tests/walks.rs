@@ -93,7 +93,7 @@ fn slabs_channel_by_channel() {
                 Tracker::Decomposition => (&apart, 2),
                 _ => (&alike, 1),
             };
-            let estimate = measure(&with_strategy(scene, strategy), 120_000);
+            let estimate = measure(&with_strategy(scene, strategy), 200_000);
             for (channel, expected) in values.into_iter().enumerate().take(channels) {
                 let label = format!("{what}, {name}, channel {channel}");
                 verdicts.check_channel(&label, &estimate, channel, expected);

@@ -368,7 +368,8 @@ impl Path<'_> {
     fn choose_direction(&self, vertex: &Vertex, rng: &mut PathRng) -> Option<Turn> {
         let strategy = &self.scene.strategy;
         let guides = self.aids.guides(strategy);
-        let probes = guides.filter(|_| strategy.advanced.guide_directions);
+        let guided = strategy.advanced.guide_directions && self.scatters < GUIDED_RAYS;
+        let probes = guides.filter(|_| guided);
         let (Some(probes), Some(point), false) = (probes, self.light, vertex.is_surface()) else {
             return vertex.sample(rng);
         };
