@@ -10,7 +10,7 @@ use flambeau::{
         render_headless,
         schedule::Limits,
     },
-    transport::{Frame, PixelSampler, Scene},
+    transport::{Frame, PixelSampler, Scene, probes::Probes},
 };
 use glam::UVec2;
 use rayon::prelude::*;
@@ -45,6 +45,8 @@ pub struct Noise {
     pub variance: f64,
     /// Relative standard error of `variance`.
     pub variance_error: f64,
+    /// Seconds that placing the probes took, before all else.
+    pub setup: f64,
     /// Seconds per sample of every pixel.
     pub seconds: f64,
     /// Tracking steps per path.
@@ -77,11 +79,15 @@ pub fn measure(scene: &Arc<Scene>, plan: &Plan, left_out: Option<([f32; 2], f32)
         .collect();
     let render = if plan.film { with_film } else { bare };
     // What is first touched or learned by the first picture is no part of the steady state.
-    render(scene, u64::MAX, plan.spp.min(4));
+    let start = process_seconds();
+    let probes = Probes::new(scene).map(Arc::new);
+    let setup = (process_seconds() - start) / THREADS;
+    let frame = |seed| Frame::with_probes(scene.clone(), UVec2::splat(SIDE), seed, probes.clone());
+    render(frame(u64::MAX), plan.spp.min(4));
     let (mut pictures, mut steps) = (Vec::new(), 0);
     let start = process_seconds();
     loop {
-        let picture = render(scene, pictures.len() as u64, plan.spp);
+        let picture = render(frame(pictures.len() as u64), plan.spp);
         pictures.push(picture.pixels);
         steps += picture.steps;
         let spent = process_seconds() - start;
@@ -98,6 +104,7 @@ pub fn measure(scene: &Arc<Scene>, plan: &Plan, left_out: Option<([f32; 2], f32)
                 mean_error,
                 variance: variance * f64::from(plan.spp),
                 variance_error,
+                setup,
                 seconds: spent / spp / THREADS,
                 steps: steps as f64 / (spp * f64::from(SIDE * SIDE)),
                 seeds: pictures.len(),
@@ -140,13 +147,8 @@ fn pixel(index: u32) -> UVec2 {
     UVec2::new(index % SIDE, index / SIDE)
 }
 
-fn frame(scene: &Arc<Scene>, seed: u64) -> Frame {
-    Frame::new(scene.clone(), UVec2::splat(SIDE), seed)
-}
-
 /// By a loop over the pixels that keeps nothing but sums.
-fn bare(scene: &Arc<Scene>, seed: u64, spp: u32) -> Picture {
-    let frame = frame(scene, seed);
+fn bare(frame: Frame, spp: u32) -> Picture {
     let (pixels, steps): (Vec<f64>, Vec<u64>) = (0..SIDE * SIDE)
         .into_par_iter()
         .map(|index| {
@@ -161,9 +163,9 @@ fn bare(scene: &Arc<Scene>, seed: u64, spp: u32) -> Picture {
 }
 
 /// As the command line renders.
-fn with_film(scene: &Arc<Scene>, seed: u64, spp: u32) -> Picture {
+fn with_film(frame: Frame, spp: u32) -> Picture {
     let job = Job {
-        sampler: Arc::new(frame(scene, seed)),
+        sampler: Arc::new(frame),
         size: UVec2::splat(SIDE),
         limits: Limits { spp, seconds: None },
         resume: None,

@@ -124,10 +124,14 @@ fn distances() -> Vec<Row> {
         row("null", Preset::Emission.strategy()),
         but("probes alone", |a| a.distance = Distance::Probes),
         but("mis", |_| ()),
+        but("mis, probes unlearned", |a| a.probe_learning = false),
         but("mis, all rays alike", |a| a.scatter_probability = ScatterProbability::Even),
         but("mis, no equal angles", |a| a.equiangular = false),
         but("mis, directions unguided", |a| a.guide_directions = false),
         but("mis, bounces guided", |a| a.guide_all_vertices = true),
+        but("mis, bounces guided, unlearned", |a| {
+            (a.guide_all_vertices, a.probe_learning) = (true, false);
+        }),
         row("old system, biased", Strategy { integrator: Integrator::March, ..full }),
     ]
 }

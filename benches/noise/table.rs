@@ -21,7 +21,8 @@ pub fn preamble(plan: &Plan) {
          - ±: its relative standard error. Seeds are added, from {} to {}, until that is {:.0} % or \
          {budget} CPU seconds are spent; where rare bright samples make the noise it may say too \
          little.\n\
-         - ms/spp: CPU time of all threads per sample of every pixel, over {THREADS}.\n\
+         - setup ms, ms/spp: CPU time of all threads for placing the probes and per sample of every \
+         pixel, over {THREADS}.\n\
          - efficiency: 1 / (variance x seconds). Equal samples, equal time: how many times less \
          variance than in the first row.\n\
          - the old system, ray marching, is biased: how far its mean is from the others' stays.",
@@ -32,13 +33,14 @@ pub fn preamble(plan: &Plan) {
 }
 
 /// The columns and their widths, wide enough for any figure.
-const COLUMNS: [(&str, usize); 11] = [
+const COLUMNS: [(&str, usize); 12] = [
     ("strategy", 26),
     ("mean", 9),
     ("±", 6),
     ("variance", 9),
     ("±", 5),
     ("seeds", 5),
+    ("setup ms", 8),
     ("ms/spp", 8),
     ("steps/path", 10),
     ("efficiency", 10),
@@ -68,6 +70,7 @@ fn cells(row: &Row, noise: &Noise, [variance, efficiency]: [f64; 2]) -> [String;
         format!("{:.3e}", noise.variance),
         format!("{:.0} %", 100.0 * noise.variance_error),
         noise.seeds.to_string(),
+        format!("{:.0}", 1.0e3 * noise.setup),
         format!("{:.3}", 1.0e3 * noise.seconds),
         format!("{:.3}", noise.steps),
         format!("{:.3e}", noise.efficiency()),
