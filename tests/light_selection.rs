@@ -217,7 +217,7 @@ fn whichever_way_lights_are_chosen_there_is_one_picture() {
     for (strategy, paths) in [
         (by(LightSelection::Uniform), 600_000),
         (probes, 600_000),
-        (point, 600_000),
+        (point, 3_000_000),
         (Strategy { probe_mis: false, ..probes }, 1_500_000),
         (Strategy { emission_ratio_tracking: false, ..probes }, 700_000),
     ] {

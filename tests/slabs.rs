@@ -125,8 +125,8 @@ fn emissivity_in_every_combination_of_toggles() {
 }
 
 /// Three rows in one slab, a channel each, made of cells and wide enough to be endless: density
-/// and albedo are chromatic, and looks at its glow come from inside it. In every setting whose looks
-/// a vertex inside fire allows.
+/// and albedo are chromatic, and looks at its glow come from inside it. In every third of the settings
+/// whose looks a vertex inside fire allows.
 #[test]
 fn emissivity_channel_by_channel() {
     let rows = [ROWS[0], ROWS[1], [0.0, 0.0, 1.0, 0.0, 0.0, 0.0]];
@@ -153,7 +153,7 @@ fn emissivity_channel_by_channel() {
         "#
     ));
     let mut verdicts = Verdicts::default();
-    for setting in every_line_setting().into_iter().filter(|setting| setting.nee) {
+    for setting in every_line_setting().into_iter().filter(|setting| setting.nee).step_by(3) {
         let estimate = measure_enough(&with_strategy(&scene, setting), 1_000_000);
         for (channel, expected) in expected.into_iter().enumerate() {
             verdicts.check_channel(&full_name(&setting), &estimate, channel, expected);

@@ -299,7 +299,7 @@ pub fn measure(scene: &Scene, paths: u32) -> Estimate {
 /// The mean radiance over the whole film, of so many paths as bring its standard error to
 /// [`POWER`], and `most` at most. How many that is, a first few of them tell by their variance.
 pub fn measure_enough(scene: &Scene, most: u32) -> Estimate {
-    const MARGIN: f64 = 0.7;
+    const MARGIN: f64 = 0.85;
     let reached = |estimate: &Estimate| {
         let relative = |channel: usize| estimate.error(channel) / estimate.mean[channel].abs();
         let worst = (0..3).map(relative).fold(0.0, f64::max) / POWER;
