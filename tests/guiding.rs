@@ -139,12 +139,17 @@ fn probes_placed_anew_change_nothing() {
         let advanced = Advanced { distance, probe_count, ..Advanced::default() };
         with_strategy(&scene, Strategy { advanced, ..Preset::Full.strategy() })
     };
+    let unlearned = || {
+        let advanced = Advanced { probe_learning: false, ..Advanced::default() };
+        with_strategy(&scene, Strategy { advanced, ..Preset::Full.strategy() })
+    };
     let reference = measure(&by(Distance::Null, 64), 800_000);
     let mut verdicts = Verdicts::default();
     for (label, scenes) in [
         ("few, then many", [by(Distance::Mis, 200), by(Distance::Mis, 6000)]),
         ("none, then some", [by(Distance::Null, 64), by(Distance::Mis, 1000)]),
         ("many, then few alone", [by(Distance::Mis, 3000), by(Distance::Probes, 300)]),
+        ("unlearned, then learned", [unlearned(), by(Distance::Mis, 1000)]),
     ] {
         let estimate = measure_one_after_another(&scenes, 400_000);
         for channel in 0..3 {
@@ -258,6 +263,42 @@ fn probes_know_where_the_lamp_is() {
         let placed = probes.len();
         assert!(placed > count as usize / 8 && placed < 2 * count as usize, "{placed}");
     }
+}
+
+/// In the shade of a board, where no look finds the lamp, only learning tells that smoke is lit: by
+/// the smoke around it. The same on any number of threads.
+#[test]
+fn probes_learn_of_light_around_corners() {
+    let text = r#"
+        [camera]
+        position = [0, -4, 0]
+        target = [0, 0, 0]
+        [[volume]]
+        shape = "box"
+        half_size = 1.0
+        density = { scale = 1.0 }
+        albedo = 0.9
+        [[light]]
+        type = "point"
+        position = [0, 0, 3]
+        intensity = 10.0
+        [[surface]]
+        shape = "quad"
+        center = [0, 0, 1.2]
+        half_u = [0.8, 0, 0]
+        half_v = [0, 0.8, 0]
+        material = { type = "black" }
+    "#;
+    let radiance = |probe_learning| {
+        let advanced = Advanced { probe_learning, ..Advanced::default() };
+        let scene = with_strategy(&build(text), Strategy { advanced, ..Preset::Full.strategy() });
+        let probes = Probes::new(&scene).unwrap();
+        probes.radiance_at(glam::Vec3A::new(0.0, 0.0, 0.5), glam::Vec3A::Y)
+    };
+    let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let [guessed, learned] = [false, true].map(radiance);
+    assert!(learned > 0.003 && learned > 10.0 * guessed, "{learned} learned, {guessed} guessed");
+    assert_eq!(learned, alone.install(|| radiance(true)));
 }
 
 #[test]

@@ -229,10 +229,6 @@ const MALFORMED: &[(&str, &[&str])] = &[
     ("[strategy]\npreset = 'best'", &["strategy.preset:", "\"best\"", "\"full\""]),
     ("[strategy]\nintegrator = 'walk'", &["strategy.integrator:", "\"path\"", "\"march\""]),
     (
-        "[strategy.advanced]\nprobe_learning = true",
-        &["strategy.advanced.probe_learning:", "strategy is not there yet"],
-    ),
-    (
         "[strategy.advanced]\nlight_selection = 'probe'",
         &["strategy.advanced.light_selection:", "\"hierarchy\"", "\"probes\""],
     ),
@@ -361,7 +357,7 @@ fn faulty_overrides_are_refused_by_name() {
         ("volume=3", &["--set: volume:", "[[volume]]"]),
         ("volume.0=3", &["--set: volume.0:", "expected table"]),
         ("strategy.preset=best", &["--set: strategy.preset:", "\"best\""]),
-        ("strategy.advanced.probe_learning=true", &["probe_learning:", "not there yet"]),
+        ("environment.rotation=30", &["environment.rotation:", "not there yet"]),
         ("a.b.c=1", &["--set: a:", "unknown key"]),
         ("=1", &["--set:", "unknown key"]),
     ] {

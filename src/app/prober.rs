@@ -184,6 +184,7 @@ fn same(a: &Built, b: &Built) -> bool {
 fn same_places(a: &Built, b: &Built) -> bool {
     let same_camera = || a.settings.camera.position == b.settings.camera.position;
     a.settings.environment == b.settings.environment
+        && a.settings.path == b.settings.path
         && a.settings.light == b.settings.light
         && a.settings.surface == b.settings.surface
         && a.scene.world.has_volumes_of(&b.scene.world)

@@ -7,7 +7,6 @@ use toml::{Table, Value};
 use super::keys::{self, join};
 use super::schema::{self, Bounds, Only};
 use crate::error::{Error, Result};
-use crate::transport::strategy::PLANNED_KEYS;
 
 /// Checks a whole scene; `source` names it in errors.
 pub(super) fn check(scene: &Table, source: &str) -> Result<()> {
@@ -74,12 +73,8 @@ impl Checker<'_> {
     ) -> Error {
         let general = keys::general(path);
         if is_planned(&general) {
-            let what = if general.starts_with("strategy.") { "strategy" } else { "feature" };
-            return Error::unsupported(
-                self.source,
-                path,
-                format!("this {what} is not there yet; leave the key out"),
-            );
+            let reason = "this feature is not there yet; leave the key out".to_owned();
+            return Error::unsupported(self.source, path, reason);
         }
         let parent = path.strip_suffix(key).unwrap_or_default();
         let near = siblings
@@ -204,13 +199,12 @@ fn fits(value: &Value, schema: &Schema) -> bool {
     }
 }
 
-/// Keys outside `[strategy]` that the scene format knows but that are not there yet.
-const PLANNED_SCENE_KEYS: &[&str] = &["environment.file", "environment.rotation"];
+/// Keys that the scene format knows but that are not there yet. They are refused with a message that
+/// says so, which is another message than for a misspelled key.
+const PLANNED_KEYS: &[&str] = &["environment.file", "environment.rotation"];
 
 fn is_planned(general_path: &str) -> bool {
-    let strategy = general_path.strip_prefix("strategy.");
-    strategy.is_some_and(|key| PLANNED_KEYS.contains(&key))
-        || PLANNED_SCENE_KEYS.contains(&general_path)
+    PLANNED_KEYS.contains(&general_path)
 }
 
 fn is_planned_value(general_path: &str, name: &str) -> bool {

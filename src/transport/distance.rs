@@ -24,7 +24,7 @@ use crate::{
 
 /// Probability of null-collision tracking where a flight is either that or guided. It bounds the
 /// weights by its inverse.
-const NULL_SHARE: f32 = 0.6;
+const NULL_SHARE: f32 = 0.4;
 /// Fewest and most guided flights of a ray from the camera, on average.
 const LEAST_FLIGHTS: f32 = 0.1;
 const MOST_FLIGHTS: f32 = 16.0;
@@ -195,6 +195,12 @@ impl<'g> Fan<'g> {
         let count = whole as u32 + u32::from(more);
         let offset = if count > 0 { rng.at(Slot::GuidedDistance) } else { 0.0 };
         Self { guide, sharing, count, offset }
+    }
+
+    /// What each flight is expected to bring.
+    pub(super) fn expected(&self) -> f32 {
+        let light = self.guide.line.as_ref().map_or(0.0, |line| line.light());
+        light / self.sharing.flights.max(LEAST_FLIGHTS)
     }
 
     /// Where the guided flights end.

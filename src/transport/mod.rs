@@ -4,6 +4,7 @@ pub mod camera;
 pub mod direct;
 mod distance;
 pub mod emission;
+mod learning;
 mod march;
 pub mod observer;
 mod optimal;
@@ -18,6 +19,7 @@ pub mod tracking;
 mod transmittance;
 mod tuning;
 pub mod vertex;
+mod window;
 
 use std::sync::Arc;
 

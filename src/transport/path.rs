@@ -22,6 +22,7 @@ use super::{
     strategy::Strategy,
     tracking::{self, Event, Flight},
     vertex::{Turn, Vertex},
+    window::{Copies, MOST_NESTED},
 };
 use crate::{
     light::{Choice, Receiver},
@@ -39,9 +40,8 @@ const ROULETTE_AFTER: u32 = 3;
 /// dim: at 1 the noise of dense smoke costs a third more time, that of lights inside of it several
 /// times as much.
 const ROULETTE_BELOW: f32 = 0.1;
-/// Rays of a path that are guided at most: later ones bring so little that guides cost more than
-/// they gain, and each adds to the spread of the path's weight.
-const GUIDED_RAYS: u32 = 4;
+/// Rays of a path that are guided at most: later ones bring too little for what guides cost.
+const GUIDED_RAYS: u32 = 10;
 
 /// What was prepared for the scene.
 #[derive(Clone, Copy, Debug)]
@@ -77,6 +77,8 @@ pub fn trace(
         scatters: 0,
         departure: None,
         light: None,
+        expected: 0.0,
+        nested: 0,
         table: march::Table::default(),
         branch: Branch::Main,
         sample: PathSample::default(),
@@ -96,6 +98,10 @@ struct Path<'s> {
     departure: Option<Departure>,
     /// A point of a light that guides the ray.
     light: Option<Vec3A>,
+    /// What a flight of the camera ray is expected to bring; 0 where that is not known.
+    expected: f32,
+    /// Splits whose copies are being followed.
+    nested: u32,
     /// Of the ray, where it is marched.
     table: march::Table,
     branch: Branch,
@@ -146,9 +152,49 @@ impl Path<'_> {
             self.note_first_event(&flight, end.as_ref(), coverage);
         }
         match self.arrive(flight.event, end.as_ref(), observer) {
-            Some(vertex) => self.turn(&vertex, rng, observer),
+            Some(vertex) => self.split(&vertex, rng, observer),
             None => false,
         }
+    }
+
+    /// Goes on from a vertex as often as pays; false when the path is over. All copies but the last
+    /// are followed to their end.
+    fn split(&mut self, vertex: &Vertex, rng: &mut PathRng, observer: &mut impl Observer) -> bool {
+        let copies = self.copies(vertex, rng);
+        self.throughput *= copies.factor;
+        for _ in 1..copies.count {
+            let (ray, throughput, light) = (self.ray, self.throughput, self.light);
+            let (scatters, departure, branch) = (self.scatters, self.departure, self.branch);
+            self.branch = Branch::Guided { first: false };
+            self.nested += 1;
+            let mut goes_on = self.turn(vertex, rng, observer);
+            while goes_on {
+                goes_on = self.advance(rng, observer);
+            }
+            self.nested -= 1;
+            (self.ray, self.throughput, self.light) = (ray, throughput, light);
+            (self.scatters, self.departure, self.branch) = (scatters, departure, branch);
+        }
+        copies.count > 0 && self.turn(vertex, rng, observer)
+    }
+
+    /// How often to go on from a vertex: once, where probes don't tell what comes of it.
+    fn copies(&self, vertex: &Vertex, rng: &mut PathRng) -> Copies {
+        match self.aids.guides(&self.scene.strategy) {
+            Some(probes) if self.is_weighed(vertex) => {
+                let position = vertex.receiver().position;
+                let radiance = probes.radiance_at(position, self.ray.direction);
+                let value = mean(self.throughput) * radiance / self.expected;
+                let brightness = self.throughput.max_element() / ROULETTE_BELOW;
+                Copies::draw(value, brightness, self.nested < MOST_NESTED, rng)
+            }
+            _ => Copies { count: 1, factor: 1.0 },
+        }
+    }
+
+    /// Whether the weight window says how a path goes on from a vertex; else it is roulette.
+    fn is_weighed(&self, vertex: &Vertex) -> bool {
+        self.expected > 0.0 && !vertex.is_surface()
     }
 
     /// Follows a guided flight of the camera ray to its end, then goes back to where it set out.
@@ -168,7 +214,7 @@ impl Path<'_> {
         {
             self.branch = Branch::Guided { first };
             let vertex = Vertex::volume(ray.at(t), ray.direction, phase);
-            let mut goes_on = self.turn(&vertex, rng, observer);
+            let mut goes_on = self.split(&vertex, rng, observer);
             while goes_on {
                 goes_on = self.advance(rng, observer);
             }
@@ -238,6 +284,7 @@ impl Path<'_> {
     ) -> Flight {
         let strategy = &self.scene.strategy;
         let fan = Fan::new(strategy, guide, self.aids.brightness, rng);
+        self.expected = fan.expected();
         for (index, t) in fan.distances().enumerate() {
             let flight = fan.guided(medium.clone(), strategy, t, self.throughput, rng);
             self.follow(flight, index == 0, rng, observer);
@@ -346,7 +393,7 @@ impl Path<'_> {
         self.ray = vertex.ray(turn.direction);
         let (from, pdf_solid_angle) = (vertex.receiver(), turn.pdf_solid_angle);
         self.departure = Some(Departure { from, choice, pdf_solid_angle });
-        self.survives(rng)
+        self.survives(vertex, rng)
     }
 
     /// How a vertex chooses the light it looks at: by the probe around it, if there is one.
@@ -388,8 +435,11 @@ impl Path<'_> {
         self.sample.guard_hit |= collisions >= tracking::MOST_COLLISIONS;
     }
 
-    /// Russian roulette on the throughput, compensated.
-    fn survives(&mut self, rng: &mut PathRng) -> bool {
+    /// Russian roulette on the throughput, compensated, where the weight window has not spoken.
+    fn survives(&mut self, vertex: &Vertex, rng: &mut PathRng) -> bool {
+        if self.is_weighed(vertex) {
+            return self.throughput != Rgb::ZERO;
+        }
         let survival = (self.throughput.max_element() / ROULETTE_BELOW).min(1.0);
         if self.scatters < ROULETTE_AFTER || survival >= 1.0 {
             return survival > 0.0;

@@ -23,7 +23,7 @@ use rayon::prelude::*;
 use super::{
     emission::Gatherer,
     scene::Scene,
-    strategy::{Advanced, LightSelection, Strategy},
+    strategy::{Advanced, Distance, LightSelection, Strategy},
 };
 use crate::{
     light::Scores,
@@ -34,6 +34,7 @@ pub use brightness::Brightness;
 pub use line::Line;
 use line::{LineBuilder, Stretch};
 use octree::{Octree, child_of};
+pub(super) use probe::Indirect;
 use probe::Probe;
 pub use view::ProbeView;
 
@@ -43,11 +44,11 @@ const FIRST_LEVELS: u32 = 3;
 const OUTSIDE: f32 = 0.05;
 /// Share of the directions that go towards the glow around the lights if all of their light is
 /// scattered.
-const MOST_HALO: f32 = 0.5;
+const MOST_HALO: f32 = 0.9;
 /// Transmittance below which a line asks the probes no more.
 const DARK: f32 = 1e-4;
 /// Fixed, with numbers that no picture is likely to use.
-const SEED: u64 = 0x7072_6f62_6573_2e2e;
+pub(super) const SEED: u64 = 0x7072_6f62_6573_2e2e;
 
 /// The probes of a scene.
 #[derive(Clone, Debug)]
@@ -66,14 +67,9 @@ pub struct Probes {
 }
 
 impl Probes {
-    /// The probes for `scene`, if its strategy asks for any and anything scatters. The same scene
-    /// always gets the same ones.
-    pub fn new(scene: &Scene) -> Option<Self> {
-        Self::unless(scene, &|| false)
-    }
-
-    /// The same, but given up, with `None`, once `stop` says so.
-    pub fn unless(scene: &Scene, stop: &(dyn Fn() -> bool + Sync)) -> Option<Self> {
+    /// Probes that know what is looked at from them, if the strategy of `scene` asks for any and
+    /// anything scatters; `None` also once `stop` says so.
+    pub(super) fn placed(scene: &Scene, stop: &(dyn Fn() -> bool + Sync)) -> Option<Self> {
         let recipe = Self::recipe(&scene.strategy)?;
         let scores_lights = recipe.advanced.light_selection == LightSelection::Probes
             && scene.lights.len(recipe.nee) > 1;
@@ -117,7 +113,7 @@ impl Probes {
                 boost_mode: aside.boost_mode,
                 boost_amount: aside.boost_amount,
                 boost_clamp_voxels: aside.boost_clamp_voxels,
-                distance: aside.distance,
+                distance: if strategy.guides() { aside.distance } else { Distance::Null },
                 scatter_probability: aside.scatter_probability,
                 tracker: aside.tracker,
                 guide_all_vertices: aside.guide_all_vertices,
@@ -128,6 +124,32 @@ impl Probes {
             },
             ..*strategy
         })
+    }
+
+    /// Every probe that guides, by its number, with its box.
+    pub(super) fn leaves(&self) -> Vec<(u32, Aabb)> {
+        self.octree.leaves()
+    }
+
+    /// Takes what was learned of the indirect light. Half of it from the eight of a cut together:
+    /// each alone has seen few paths.
+    pub(super) fn learn(&mut self, learned: &[(u32, Indirect)]) {
+        let family = |node: u32| node.div_ceil(8) as usize;
+        let mut families = vec![(Indirect::default(), 0.0); family(self.probes.len() as u32) + 1];
+        for (node, indirect) in learned {
+            let (sum, leaves) = &mut families[family(*node)];
+            sum.merge(indirect, 1.0);
+            *leaves += 1.0;
+        }
+        for (node, indirect) in learned {
+            let (sum, leaves) = &families[family(*node)];
+            let mut shared = Indirect::default();
+            shared.merge(indirect, 0.5);
+            shared.merge(sum, 0.5 / leaves);
+            self.probes[*node as usize].learn(&shared);
+        }
+        self.outside = OUTSIDE * self.mean_radiance();
+        self.mean_cosine = self.weighted_cosine();
     }
 
     /// Whether the probes of `scene` are placed around its camera: in a fog without borders.
@@ -264,6 +286,15 @@ impl Probes {
             }
         }
         line.finish()
+    }
+
+    /// Radiance thought to be scattered at a point back along a ray of the unit `direction`, per unit
+    /// of μ_s.
+    pub fn radiance_at(&self, point: Vec3A, direction: Vec3A) -> f32 {
+        match self.octree.leaf_at(point) {
+            Some(leaf) => self.probes[leaf as usize].in_scattered(direction),
+            None => self.outside,
+        }
     }
 
     fn radiance(&self, leaf: Option<u32>, ray: &Ray) -> f32 {

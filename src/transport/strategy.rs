@@ -25,7 +25,7 @@ pub struct Strategy {
     /// random direction. Much less noise wherever fire lights smoke, floors or walls.
     pub nee: bool,
     /// Scatter where light is: probes spread over the smoke know how bright it is lit and send
-    /// paths there. Much less noise for torches in mist and other lights inside of thin smoke.
+    /// paths there, split those that will bring much and end some that won't. Much less noise for torches in mist and other lights inside of thin smoke.
     pub probe_mis: bool,
     /// How light is followed through volumes. `path` is right on average, whatever else is set;
     /// `march` is ray marching, the old system, kept for comparison: its pictures are biased, and
@@ -91,6 +91,9 @@ pub struct Advanced {
     /// place.
     #[schemars(range(min = 64, max = 1_000_000))]
     pub probe_count: u32,
+    /// Let the probes learn from a few paths before the picture begins, what light comes to them after
+    /// it has scattered or come off surfaces. Takes longer to prepare.
+    pub probe_learning: bool,
     /// Ask the probes at the first bounces as well, not only along the rays from the camera.
     pub guide_all_vertices: bool,
     /// With the probes on: also scatter near the point that light comes from, by equal angles of
@@ -217,10 +220,6 @@ pub enum Preset {
     Full,
 }
 
-/// Keys of `[strategy]` that the scene format knows but whose strategy is not there yet. They are
-/// refused with a message that says so, which is another message than for a misspelled key.
-pub const PLANNED_KEYS: &[&str] = &["advanced.probe_learning"];
-
 impl Strategy {
     /// The preset whose toggles these are, whatever the integrator and the advanced choices; the
     /// fuller one where two presets coincide.
@@ -298,6 +297,7 @@ impl Default for Advanced {
             transmittance: TransmittanceEstimator::default(),
             tracker: Tracker::default(),
             probe_count: 4096,
+            probe_learning: true,
             guide_all_vertices: false,
             equiangular: true,
             guide_directions: true,

@@ -117,6 +117,7 @@ fn guided_scattering(
             *edit = Some("probe count");
         }
         for (value, name, key) in [
+            (&mut advanced.probe_learning, "Learn", "strategy.advanced.probe_learning"),
             (&mut advanced.equiangular, "Equal angles", "strategy.advanced.equiangular"),
             (
                 &mut advanced.guide_directions,

@@ -17,8 +17,10 @@ use crate::{
 const POINTS: usize = 4;
 /// Points that are tried for matter until so many have some.
 const TRIES: usize = 12;
-/// Share of the light found that is taken to have scattered about and come from everywhere.
-const SHARE_OF_AMBIENT: f32 = 0.1;
+/// Light taken to have scattered about, relative to that found, until more is known.
+const SHARE_OF_INDIRECT: f32 = 0.1;
+/// Largest mean cosine of indirect light: few paths may have come the same way by chance.
+const MOST_COSINE: f32 = 0.9;
 /// Density guessed, relative to its upper bound, where none was found.
 const LEAST_DENSITY: f32 = 0.02;
 
@@ -26,7 +28,9 @@ const LEAST_DENSITY: f32 = 0.02;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Probe {
     lobes: [Lobe; POINTS],
-    /// Radiance taken to come from everywhere.
+    /// Light that has turned before it gets here.
+    indirect: Indirect,
+    /// Radiance of the environment, taken to come from everywhere.
     ambient: f32,
     /// Mean cosine of the scattering.
     g: f32,
@@ -47,7 +51,68 @@ struct Lobe {
     fluence: f32,
 }
 
+/// Light that arrives after it has been scattered or reflected. As moments it can be added up.
+#[derive(Clone, Copy, Debug)]
+pub struct Indirect {
+    /// ∫ L dω.
+    fluence: f32,
+    /// ∫ L ω dω, ω towards where it comes from.
+    flux: Vec3A,
+    /// Of the moments: unit direction and mean cosine to it.
+    axis: Vec3A,
+    cosine: f32,
+}
+
+impl Default for Indirect {
+    fn default() -> Self {
+        Self { fluence: 0.0, flux: Vec3A::ZERO, axis: Vec3A::X, cosine: 0.0 }
+    }
+}
+
+impl Indirect {
+    /// From everywhere.
+    fn even(fluence: f32) -> Self {
+        Self { fluence, ..Self::default() }
+    }
+
+    /// Adds light from a unit direction.
+    pub fn add(&mut self, direction: Vec3A, fluence: f32) {
+        let fluence = finite(fluence);
+        self.merge(&Self { fluence, flux: fluence * direction, ..Self::default() }, 1.0);
+    }
+
+    /// The same light, dimmed.
+    pub fn scaled(&self, factor: f32) -> Self {
+        Self { fluence: factor * self.fluence, flux: factor * self.flux, ..*self }
+    }
+
+    /// Adds a multiple of another's.
+    pub fn merge(&mut self, other: &Self, factor: f32) {
+        self.fluence += factor * other.fluence;
+        self.flux += factor * other.flux;
+        if let Some(axis) = self.flux.try_normalize() {
+            self.axis = axis;
+            self.cosine = (self.flux.length() / self.fluence).min(MOST_COSINE);
+        }
+    }
+
+    /// ∫ L ρ dω for a phase function of mean cosine `g`: Henyey-Greenstein lobes stay such when they
+    /// are convolved, their mean cosines multiplied.
+    #[inline]
+    fn in_scattered(&self, g: f32, direction: Vec3A) -> f32 {
+        self.fluence * henyey_greenstein(g * self.cosine, direction, self.axis)
+    }
+}
+
 impl Probe {
+    /// Takes what was learned in place of what was guessed.
+    pub(super) fn learn(&mut self, indirect: &Indirect) {
+        let before = self.radiance();
+        self.indirect = *indirect;
+        let grown = self.radiance() / before;
+        self.power *= if grown.is_finite() { grown } else { 1.0 };
+    }
+
     /// Looks at the lights from points in `bounds`.
     pub(super) fn new(
         scene: &Scene,
@@ -71,16 +136,18 @@ impl Probe {
         }
         lobes.iter_mut().for_each(|lobe| lobe.fluence /= POINTS as f32);
         let fluence: f32 = lobes.iter().map(|lobe| lobe.fluence).sum();
-        let ambient = ambient + SHARE_OF_AMBIENT * fluence / (4.0 * PI);
+        let indirect = Indirect::even(SHARE_OF_INDIRECT * fluence);
         let [g, density, albedo] = matter.means();
-        let power = matter.mu_s / TRIES as f32 * (fluence / (4.0 * PI) + ambient);
-        Self { lobes, ambient, g, density, albedo, power }
+        let mut probe = Self { lobes, indirect, ambient, g, density, albedo, power: 0.0 };
+        probe.power = matter.mu_s / TRIES as f32 * probe.radiance();
+        probe
     }
 
     /// ∫ L ρ dω back along a ray with the unit `direction`.
     #[inline]
     pub(super) fn in_scattered(&self, direction: Vec3A) -> f32 {
-        self.lobes.iter().fold(self.ambient, |sum, lobe| {
+        let diffuse = self.ambient + self.indirect.in_scattered(self.g, direction);
+        self.lobes.iter().fold(diffuse, |sum, lobe| {
             sum + lobe.fluence * henyey_greenstein(self.g, direction, lobe.direction)
         })
     }
@@ -98,7 +165,7 @@ impl Probe {
     /// Radiance scattered per unit of μ_s, whatever the direction.
     pub(super) fn radiance(&self) -> f32 {
         let fluence: f32 = self.lobes.iter().map(|lobe| lobe.fluence).sum();
-        self.ambient + fluence / (4.0 * PI)
+        self.ambient + (self.indirect.fluence + fluence) / (4.0 * PI)
     }
 }
 

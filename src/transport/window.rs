@@ -1,0 +1,72 @@
+//! The weight window: a path that is thought to bring much more than a flight of its pixel does
+//! goes on several times, one that brings much less plays roulette (Vorba and Křivánek 2016,
+//! *Adjoint-Driven Russian Roulette and Splitting in Light Transport Simulation*).
+//!
+//! Guides draw from mixtures, and each draw adds to the spread of a path's weight; the window takes
+//! it back before it compounds. What a path is thought to bring comes from the probes, fixed before
+//! the path. Unbiased whatever they think: copies times their factor is 1 on average.
+
+use crate::math::PathRng;
+
+/// Values, relative to what a flight should bring, between which a path simply goes on.
+const WINDOW: [f32; 2] = [0.33, 1.67];
+/// Most copies of a path at one vertex.
+const MOST_COPIES: f32 = 8.0;
+/// Least chance to go on: probes know little of places that are brighter than what is around them.
+const LEAST_SURVIVAL: f32 = 0.3;
+/// How deep splits may nest, each on the stack.
+pub(super) const MOST_NESTED: u32 = 24;
+
+/// How often a path goes on from a vertex, and the factor of its throughput each time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Copies {
+    pub(super) count: u32,
+    pub(super) factor: f32,
+}
+
+impl Copies {
+    /// Of a path of `value`, which ends by roulette only if `brightness` says it is dim as well:
+    /// its throughput relative to one worth keeping. Long bright paths in white media are many, and
+    /// what they bring the probes tell but roughly.
+    pub(super) fn draw(value: f32, brightness: f32, may_split: bool, rng: &mut PathRng) -> Self {
+        if value > WINDOW[1] && may_split {
+            let wanted = value.min(MOST_COPIES);
+            return Self { count: (wanted + rng.uniform()) as u32, factor: 1.0 / wanted };
+        }
+        let survival = (value / WINDOW[0]).max(brightness).clamp(LEAST_SURVIVAL, 1.0);
+        if survival < 1.0 && rng.uniform() >= survival {
+            return Self { count: 0, factor: 0.0 };
+        }
+        Self { count: 1, factor: 1.0 / survival }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::UVec2;
+
+    use super::*;
+
+    /// Copies times factor is 1 on average, within four standard errors; whatever the value.
+    #[test]
+    fn nothing_is_lost_or_gained() {
+        const DRAWS: u32 = 100_000;
+        let values = [0.0, 0.1, 0.2, 0.5, 1.0, 1.9, 3.3, 50.0, f32::INFINITY, f32::NAN];
+        for (index, value) in values.into_iter().enumerate() {
+            for (brightness, may_split) in [(0.0, true), (0.5, true), (2.0, false)] {
+                let (mut sum, mut squares) = (0.0, 0.0);
+                let mut rng = PathRng::new(0, UVec2::new(index as u32, 0), 0);
+                for _ in 0..DRAWS {
+                    let copies = Copies::draw(value, brightness, may_split, &mut rng);
+                    assert!(copies.count <= 1 || may_split);
+                    let found = f64::from(copies.count) * f64::from(copies.factor);
+                    sum += found;
+                    squares += found * found;
+                }
+                let mean = sum / f64::from(DRAWS);
+                let error = ((squares / f64::from(DRAWS) - mean * mean) / f64::from(DRAWS)).sqrt();
+                assert!((mean - 1.0).abs() <= 4.0 * error + 1e-6, "{value}: {mean} ± {error}");
+            }
+        }
+    }
+}
