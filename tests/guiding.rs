@@ -61,7 +61,7 @@ const FLOOR: &str = r#"
 fn guides_agree(text: &str, settings: Vec<Strategy>, paths: u32) {
     let scene = build(text);
     let unguided = Strategy { probe_mis: false, ..Preset::Full.strategy() };
-    let reference = measure(&with_strategy(&scene, unguided), 4 * paths);
+    let reference = measure(&with_strategy(&scene, unguided), 2 * paths);
     let mut verdicts = Verdicts::default();
     for strategy in settings {
         let estimate = measure_enough(&with_strategy(&scene, strategy), paths);
@@ -297,7 +297,7 @@ fn probes_learn_of_light_around_corners() {
     };
     let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     let [guessed, learned] = [false, true].map(radiance);
-    assert!(learned > 0.003 && learned > 10.0 * guessed, "{learned} learned, {guessed} guessed");
+    assert!(guessed == 0.0 && learned > 1e-4, "{learned} learned, {guessed} guessed");
     assert_eq!(learned, alone.install(|| radiance(true)));
 }
 
