@@ -72,7 +72,7 @@ const EVERYTHING: &str = r#"
 #[test]
 fn every_combination_gives_one_picture() {
     let scene = build(EVERYTHING);
-    let reference = measure(&with_strategy(&scene, Preset::Full.strategy()), 1_200_000);
+    let reference = measure(&with_strategy(&scene, Preset::Full.strategy()), 2_000_000);
     let mut verdicts = Verdicts::default();
     let literal = Advanced { boost_mode: BoostMode::Literal, ..Advanced::default() };
     let strong = Advanced { boost_amount: 5.0, ..Advanced::default() };
@@ -102,7 +102,7 @@ fn the_error_falls_as_one_over_n() {
     const REFERENCE: u32 = 4096;
     let advanced = Advanced { low_discrepancy: false, ..Advanced::default() };
     let scene = with_strategy(&build(EVERYTHING), Strategy { advanced, ..Strategy::default() });
-    let size = UVec2::splat(16);
+    let size = UVec2::splat(32);
     let frame = Frame::new(Arc::new(scene), size, common::seed());
     let errors: Vec<[f64; 4]> = (0..size.element_product())
         .into_par_iter()

@@ -61,7 +61,7 @@ const FLOOR: &str = r#"
 fn guides_agree(text: &str, settings: Vec<Strategy>, paths: u32) {
     let scene = build(text);
     let unguided = Strategy { probe_mis: false, ..Preset::Full.strategy() };
-    let reference = measure(&with_strategy(&scene, unguided), 2 * paths);
+    let reference = measure(&with_strategy(&scene, unguided), 4 * paths);
     let mut verdicts = Verdicts::default();
     for strategy in settings {
         let estimate = measure_enough(&with_strategy(&scene, strategy), paths);

@@ -10,7 +10,7 @@ use flambeau::{
     transport::{
         PathSample, Scene, direct,
         probes::Probes,
-        strategy::{Advanced, LightSelection, Strategy},
+        strategy::{Advanced, LightSelection, NeeEvaluation, Strategy},
     },
 };
 use glam::{UVec2, Vec3A};
@@ -194,8 +194,7 @@ fn hidden_lights_are_rarely_chosen() {
     assert!(shares[1] < 0.5 * shares[0] && shares[0] > 0.1, "{shares:?}");
 }
 
-/// Mist, surfaces inside and outside of it, with and without looks at fire, by lines: the mist is in the
-/// fires too, where one point of their glow has infinite variance.
+/// Mist, surfaces inside and outside of it, with and without looks at fire, by lines and by points.
 #[test]
 fn whichever_way_lights_are_chosen_there_is_one_picture() {
     let scene = build(&walls());
@@ -213,9 +212,12 @@ fn whichever_way_lights_are_chosen_there_is_one_picture() {
     let hierarchy = estimate(by(LightSelection::Hierarchy), 450_000);
     let mut verdicts = Verdicts::default();
     let probes = by(LightSelection::Probes);
+    let mut point = probes;
+    point.advanced.nee_evaluation = NeeEvaluation::Point;
     for (strategy, paths) in [
         (by(LightSelection::Uniform), 600_000),
         (probes, 600_000),
+        (point, 600_000),
         (Strategy { probe_mis: false, ..probes }, 1_500_000),
         (Strategy { emission_ratio_tracking: false, ..probes }, 700_000),
     ] {

@@ -30,12 +30,9 @@ fn looks() -> Vec<(String, Strategy)> {
     looks
 }
 
-/// Those along lines, without guides: these spread the weights in fog that glows everywhere, and
-/// have tests of their own.
 fn along_lines() -> Vec<(String, Strategy)> {
     let line = |look: &(String, Strategy)| look.1.advanced.nee_evaluation == NeeEvaluation::Line;
-    let unguided = |(name, look)| (name, Strategy { probe_mis: false, ..look });
-    looks().into_iter().filter(line).map(unguided).collect()
+    looks().into_iter().filter(line).collect()
 }
 
 /// Light that scatters or is reflected: what the camera itself sees of fire and lamps is no matter
@@ -178,5 +175,5 @@ fn a_fire_in_fog_that_glows() {
         emission = {{ mode = "source", le = [4.0, 2.0, 1.0] }}
         "#
     );
-    agree(&build(&text), &along_lines(), [300_000, 400_000]);
+    agree(&build(&text), &along_lines(), [200_000, 400_000]);
 }

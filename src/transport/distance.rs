@@ -24,7 +24,7 @@ use crate::{
 
 /// Probability of null-collision tracking where a flight is either that or guided. It bounds the
 /// weights by its inverse.
-const NULL_SHARE: f32 = 0.4;
+const NULL_SHARE: f32 = 0.6;
 /// Fewest and most guided flights of a ray from the camera, on average.
 const LEAST_FLIGHTS: f32 = 0.1;
 const MOST_FLIGHTS: f32 = 16.0;

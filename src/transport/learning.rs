@@ -1,5 +1,5 @@
 //! What probes learn from paths: the light that reaches a place after it has turned before, which
-//! no look at a light tells (the online learning of Huang et al. 2021, section 4, as a pre-pass).
+//! no look at a light tells.
 //!
 //! Rays go out from points in each probe in directions spread over the sphere. What is scattered
 //! and reflected into them is the radiance that arrives indirectly, hidden lights and walls

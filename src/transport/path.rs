@@ -40,8 +40,9 @@ const ROULETTE_AFTER: u32 = 3;
 /// dim: at 1 the noise of dense smoke costs a third more time, that of lights inside of it several
 /// times as much.
 const ROULETTE_BELOW: f32 = 0.1;
-/// Rays of a path that are guided at most: later ones bring too little for what guides cost.
-const GUIDED_RAYS: u32 = 10;
+/// Rays of a path that are guided at most: later ones bring so little that guides cost more than
+/// they gain, and each adds to the spread of the path's weight.
+const GUIDED_RAYS: u32 = 4;
 
 /// What was prepared for the scene.
 #[derive(Clone, Copy, Debug)]

@@ -44,7 +44,7 @@ const FIRST_LEVELS: u32 = 3;
 const OUTSIDE: f32 = 0.05;
 /// Share of the directions that go towards the glow around the lights if all of their light is
 /// scattered.
-const MOST_HALO: f32 = 0.9;
+const MOST_HALO: f32 = 0.5;
 /// Transmittance below which a line asks the probes no more.
 const DARK: f32 = 1e-4;
 /// Fixed, with numbers that no picture is likely to use.

@@ -25,7 +25,8 @@ pub struct Strategy {
     /// random direction. Much less noise wherever fire lights smoke, floors or walls.
     pub nee: bool,
     /// Scatter where light is: probes spread over the smoke know how bright it is lit and send
-    /// paths there, split those that will bring much and end some that won't. Much less noise for torches in mist and other lights inside of thin smoke.
+    /// paths there, split those that will bring much and end some that won't. Much less noise for
+    /// torches in mist and other lights inside of thin smoke.
     pub probe_mis: bool,
     /// How light is followed through volumes. `path` is right on average, whatever else is set;
     /// `march` is ray marching, the old system, kept for comparison: its pictures are biased, and
@@ -91,8 +92,8 @@ pub struct Advanced {
     /// place.
     #[schemars(range(min = 64, max = 1_000_000))]
     pub probe_count: u32,
-    /// Let the probes learn from a few paths before the picture begins, what light comes to them after
-    /// it has scattered or come off surfaces. Takes longer to prepare.
+    /// With the probes on: let them learn from a few paths, before the picture begins, what light
+    /// comes to them after it has scattered or come off surfaces. Takes longer to prepare.
     pub probe_learning: bool,
     /// Ask the probes at the first bounces as well, not only along the rays from the camera.
     pub guide_all_vertices: bool,
