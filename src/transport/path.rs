@@ -43,6 +43,9 @@ const ROULETTE_BELOW: f32 = 0.1;
 /// Rays of a path that are guided at most: later ones bring so little that guides cost more than
 /// they gain, and each adds to the spread of the path's weight.
 const GUIDED_RAYS: u32 = 4;
+/// Turns up to which the weight window is asked: the spread that guides bring is behind by then, and
+/// to look up a probe at each of a thousand turns costs more than the walk.
+const WEIGHED_TURNS: u32 = 8;
 
 /// What was prepared for the scene.
 #[derive(Clone, Copy, Debug)]
@@ -195,7 +198,7 @@ impl Path<'_> {
 
     /// Whether the weight window says how a path goes on from a vertex; else it is roulette.
     fn is_weighed(&self, vertex: &Vertex) -> bool {
-        self.expected > 0.0 && !vertex.is_surface()
+        self.expected > 0.0 && self.scatters < WEIGHED_TURNS && !vertex.is_surface()
     }
 
     /// Follows a guided flight of the camera ray to its end, then goes back to where it set out.
