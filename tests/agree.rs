@@ -7,6 +7,7 @@ use std::sync::Arc;
 use common::{Verdicts, all_strategies, build, measure, measure_enough, name, with_strategy};
 use flambeau::transport::{
     Frame, PixelSampler,
+    probes::Probes,
     strategy::{Advanced, BoostMode, Preset, Strategy},
 };
 use glam::UVec2;
@@ -137,12 +138,14 @@ fn relative_error(values: &[f64], n: usize, reference: f64) -> f64 {
 #[test]
 fn gray_media_take_a_shortcut_to_the_same_paths() {
     let text = |albedo: &str| EVERYTHING.replace("albedo = [0.9, 0.8, 0.7]", albedo);
+    let scene = |albedo: &str| Arc::new(build(&text(albedo).replace("albedo = 0.3", albedo)));
+    // The same for all: what probes learn from paths hangs on last digits as well.
+    let probes = Probes::new(&scene("albedo = 0.8")).map(Arc::new);
     let frame = |albedo: &str| {
-        let scene = build(&text(albedo).replace("albedo = 0.3", albedo));
-        Frame::new(Arc::new(scene), UVec2::splat(32), common::seed())
+        Frame::with_probes(scene(albedo), UVec2::splat(32), common::seed(), probes.clone())
     };
     let (gray, colored) = (frame("albedo = 0.8"), frame("albedo = [0.8, 0.8, 0.80000001]"));
-    let nearly = frame("albedo = [0.8, 0.8, 0.8000003]");
+    let nearly = frame("albedo = [0.8, 0.8, 0.8000001]");
     assert_eq!(gray.sample(UVec2::ZERO, 0), colored.sample(UVec2::ZERO, 0), "rounds to gray");
     let (mut same, mut count, mut lit) = (0, 0, 0);
     for i in 0..frame_pixels(&gray) * 8 {
