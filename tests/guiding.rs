@@ -3,7 +3,7 @@
 mod common;
 
 use common::{
-    Verdicts, build, every_guide, few_guides, full_name, half_of_strategies, measure,
+    Verdicts, asking, build, every_guide, few_guides, full_name, half_of_strategies, measure,
     measure_enough, measure_one_after_another, measure_with, with_strategy,
 };
 use flambeau::transport::{
@@ -111,12 +111,8 @@ fn probes_alone_find_all_that_chance_finds() {
     let text = EMBEDDED.replace("SCALE", "0.8") + "[path]\nmax_scatters = 1\n";
     let scene = build(&text);
     let estimate = |distance, paths| {
-        let advanced = Advanced {
-            distance,
-            equiangular: false,
-            guide_directions: false,
-            ..Advanced::default()
-        };
+        let advanced =
+            Advanced { distance, equiangular: false, guide_directions: false, ..asking() };
         let strategy = Strategy { advanced, ..Preset::Full.strategy() };
         let estimate = measure_with(&with_strategy(&scene, strategy), paths, |path| path.direct);
         let weak = |c: usize| estimate.error(c) > common::POWER * estimate.mean[c];
@@ -136,11 +132,11 @@ fn probes_alone_find_all_that_chance_finds() {
 fn probes_placed_anew_change_nothing() {
     let scene = build(&EMBEDDED.replace("SCALE", "0.8"));
     let by = |distance, probe_count| {
-        let advanced = Advanced { distance, probe_count, ..Advanced::default() };
+        let advanced = Advanced { distance, probe_count, ..asking() };
         with_strategy(&scene, Strategy { advanced, ..Preset::Full.strategy() })
     };
     let unlearned = || {
-        let advanced = Advanced { probe_learning: false, ..Advanced::default() };
+        let advanced = Advanced { probe_learning: false, ..asking() };
         with_strategy(&scene, Strategy { advanced, ..Preset::Full.strategy() })
     };
     let reference = measure(&by(Distance::Null, 64), 800_000);

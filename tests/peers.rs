@@ -12,7 +12,7 @@ use flambeau::{
     },
     transport::{
         Frame, PixelSampler, Scene,
-        strategy::{BoostMode, Strategy},
+        strategy::{BoostMode, Preset, Strategy},
     },
 };
 use glam::UVec2;
@@ -92,7 +92,9 @@ fn fire_absorb_matches_its_exact_picture() {
             (false, false, _) => 2048,
         };
         // The default brings it far lower at the same cost.
-        let power = if strategy == Strategy::default() { 0.0015 } else { common::POWER };
+        let is_default = strategy.preset() == Some(Preset::Full)
+            && strategy.advanced.boost_mode == BoostMode::default();
+        let power = if is_default { 0.0015 } else { common::POWER };
         let pixels = render(&with_strategy(&scene, strategy), samples);
         let mut name = name(&strategy);
         if strategy.advanced.boost_mode == BoostMode::Optimal {

@@ -2,12 +2,14 @@
 
 mod common;
 
-use common::build;
+use std::sync::Arc;
+
+use common::{build, with_strategy};
 use flambeau::math::Ray;
 use flambeau::transport::{
-    Scene,
-    probes::Probes,
+    Frame, Scene,
     profile::{Profile, Row},
+    strategy::{Advanced, Strategy},
 };
 use glam::{UVec2, Vec3A};
 
@@ -18,8 +20,15 @@ fn along_y() -> Ray {
     Ray::new(Vec3A::new(0.0, -5.0, 0.0), Vec3A::Y)
 }
 
+/// With the probes, whether they pay or not.
+fn frame(scene: &Scene) -> Frame {
+    let advanced = Advanced { share_learning: false, ..scene.strategy.advanced };
+    let strategy = Strategy { advanced, ..scene.strategy };
+    Frame::new(Arc::new(with_strategy(scene, strategy)), SIZE, 0)
+}
+
 fn profile(scene: &Scene) -> Profile {
-    Profile::along(scene, Probes::new(scene).as_ref(), SIZE, &along_y(), ROWS).unwrap()
+    Profile::along(&frame(scene), &along_y(), ROWS).unwrap()
 }
 
 /// The trapezoidal rule.
@@ -146,5 +155,5 @@ fn fog_ends_where_it_is_dark() {
     assert!((all.rows[ROWS as usize - 1].t - 14.0).abs() < 1e-3);
     assert_eq!(all, profile(&scene), "no chance is involved");
     let aside = Ray::new(Vec3A::new(0.0, -5.0, 3.0), Vec3A::Y);
-    assert!(Profile::along(&build(BALL), None, SIZE, &aside, ROWS).is_none(), "nothing is there");
+    assert!(Profile::along(&frame(&build(BALL)), &aside, ROWS).is_none(), "nothing is there");
 }

@@ -2,13 +2,11 @@
 
 mod common;
 
-use std::sync::Arc;
-
-use common::{Estimate, Z_LIMIT, build, every_setting, full_name, seed, with_strategy};
+use common::{Estimate, Z_LIMIT, build, every_setting, framed, full_name, with_strategy};
 use flambeau::{
     render::{Film, estimate::PixelEstimate},
     transport::{
-        Frame, PathSample, PixelSampler, Scene,
+        PathSample, PixelSampler, Scene,
         strategy::{Preset, Strategy},
     },
 };
@@ -84,7 +82,7 @@ const FIRE_AND_SMOKE: &str = r#"
 /// What the camera sees itself and what light brings to what it sees: each with the mean and its
 /// variance of every block of the film, and of all of it last.
 fn seen_and_lit(scene: &Scene, samples: u32) -> [Vec<Estimate>; 2] {
-    let frame = Frame::new(Arc::new(scene.clone()), UVec2::splat(SIDE), seed());
+    let frame = framed(scene, SIDE);
     let pixels: Vec<[Estimate; 2]> = (0..SIDE * SIDE)
         .into_par_iter()
         .map(|i| {

@@ -45,7 +45,7 @@ pub struct Noise {
     pub variance: f64,
     /// Relative standard error of `variance`.
     pub variance_error: f64,
-    /// Seconds that placing the probes took, before all else.
+    /// Seconds that placing the probes and the pilot took, before all else.
     pub setup: f64,
     /// Seconds per sample of every pixel.
     pub seconds: f64,
@@ -81,9 +81,12 @@ pub fn measure(scene: &Arc<Scene>, plan: &Plan, left_out: Option<([f32; 2], f32)
     // What is first touched or learned by the first picture is no part of the steady state.
     let start = process_seconds();
     let probes = Probes::new(scene).map(Arc::new);
+    let first = Frame::with_probes(scene.clone(), UVec2::splat(SIDE), u64::MAX, probes);
+    // The second sample waits for the pilot.
+    first.sample(UVec2::ZERO, 1);
     let setup = (process_seconds() - start) / THREADS;
-    let frame = |seed| Frame::with_probes(scene.clone(), UVec2::splat(SIDE), seed, probes.clone());
-    render(frame(u64::MAX), plan.spp.min(4));
+    let frame = |seed| first.with_seed(seed);
+    render(first.clone(), plan.spp.min(4));
     let (mut pictures, mut steps) = (Vec::new(), 0);
     let start = process_seconds();
     loop {

@@ -99,14 +99,14 @@ fn toggles(scene: &BenchScene) -> Vec<Row> {
     rows
 }
 
-/// Every mode of the boost at every amount, all else as in `full`.
+/// Every mode of the boost at every amount. Without the probes, which emission has no use for.
 fn modes() -> Vec<Row> {
-    let full = Preset::Full.strategy();
-    let mut rows = vec![row("unboosted", Strategy { majorant_boost: false, ..full })];
+    let emission = Preset::Emission.strategy();
+    let mut rows = vec![row("unboosted", Strategy { majorant_boost: false, ..emission })];
     for (boost_mode, name) in MODES {
         rows.extend(AMOUNTS.map(|boost_amount| {
-            let advanced = Advanced { boost_mode, boost_amount, ..full.advanced };
-            row(&format!("{name} {boost_amount}"), Strategy { advanced, ..full })
+            let advanced = Advanced { boost_mode, boost_amount, ..emission.advanced };
+            row(&format!("{name} {boost_amount}"), Strategy { advanced, ..emission })
         }));
     }
     rows
@@ -124,6 +124,7 @@ fn distances() -> Vec<Row> {
         row("null", Preset::Emission.strategy()),
         but("probes alone", |a| a.distance = Distance::Probes),
         but("mis", |_| ()),
+        but("mis, share not learned", |a| a.share_learning = false),
         but("mis, probes unlearned", |a| a.probe_learning = false),
         but("mis, all rays alike", |a| a.scatter_probability = ScatterProbability::Even),
         but("mis, no equal angles", |a| a.equiangular = false),

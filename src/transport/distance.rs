@@ -242,3 +242,160 @@ impl<'g> Fan<'g> {
         flight
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use glam::UVec2;
+
+    use super::*;
+    use crate::{
+        error::NO_PROGRESS,
+        scene::{self, Overrides, VolumeCache},
+        transport::{Scene, probes::Probes, strategy::Advanced},
+    };
+
+    const SMOKE: &str = r#"
+        [[volume]]
+        shape = "noise"
+        half_size = 1.0
+        frequency = 2.0
+        contrast = 2.0
+        density = { scale = 3.0 }
+        albedo = [0.9, 0.7, 0.5]
+        phase = { g = 0.4 }
+        [[light]]
+        type = "point"
+        position = [0.3, 0.1, 0.2]
+        intensity = 1.0
+    "#;
+    const LAMP: Vec3A = Vec3A::new(0.3, 0.1, 0.2);
+
+    fn smoke() -> Scene {
+        let settings = scene::parse(SMOKE, "test", Path::new("."), &Overrides::default()).unwrap();
+        scene::build(&settings, &VolumeCache::default(), NO_PROGRESS).unwrap()
+    }
+
+    /// A ray through the smoke and what guides its flights: the line, the lamp or both.
+    fn guided_ray<'s>(
+        scene: &'s Scene,
+        probes: &Probes,
+        index: u64,
+    ) -> Option<(Guide, MediumRay<'s>)> {
+        let mut rng = PathRng::new(index, UVec2::ONE, 0);
+        let target = 0.5 * Vec3A::new(rng.uniform(), rng.uniform(), rng.uniform());
+        let origin = Vec3A::new(-3.0, 0.2, 0.1);
+        let ray = Ray::new(origin, (target - origin).normalize());
+        let medium = scene.world.along(ray, f32::INFINITY);
+        let (t0, t1) = medium.extent()?;
+        let line = probes.along(medium.clone(), &ray).filter(|_| index % 3 != 2);
+        let light = Equiangular::new(&ray, LAMP, probes.mean_cosine(), t0, t1);
+        Some((Guide::new(line, light.filter(|_| index % 3 != 1))?, medium))
+    }
+
+    /// A flight as the path sees it, the same with its weight over the density of chance alone, and
+    /// how often each of the two kinds is drawn on average.
+    struct Drawn {
+        flight: Flight,
+        plain: Flight,
+        counts: [f32; 2],
+    }
+
+    /// Of a ray that has one flight.
+    fn one_of_one(strategy: &Strategy, guide: &Guide, medium: &MediumRay, index: u64) -> Drawn {
+        let mut rng = PathRng::new(index, UVec2::ZERO, 0);
+        let mut again = rng.clone();
+        let flight = null_or_guided(medium.clone(), strategy, guide, Rgb::ONE, &mut rng);
+        let u = again.at(Slot::Distance);
+        let plain = if u < NULL_SHARE {
+            let depth = -(1.0 - u / NULL_SHARE).max(f32::EPSILON).ln();
+            tracking::scatter(medium.clone(), strategy, Rgb::ONE, depth, &mut again)
+        } else {
+            let t = guide.sample((u - NULL_SHARE) / (1.0 - NULL_SHARE));
+            tracking::fill(medium.clone(), strategy, Rgb::ONE, t, &mut again)
+        };
+        Drawn { flight, plain, counts: [NULL_SHARE, 1.0 - NULL_SHARE] }
+    }
+
+    /// Of a ray that has several, the first guided one if there is any.
+    fn one_of_several(strategy: &Strategy, guide: &Guide, medium: &MediumRay, index: u64) -> Drawn {
+        let film = Brightness { scattered: 1.0, share: 0.7 };
+        let mut rng = PathRng::new(index, UVec2::ZERO, 0);
+        let fan = Fan::new(strategy, guide, film, &mut rng);
+        let mut again = rng.clone();
+        let medium = || medium.clone();
+        let (flight, plain) = match fan.distances().next() {
+            Some(t) => (
+                fan.guided(medium(), strategy, t, Rgb::ONE, &mut rng),
+                tracking::fill(medium(), strategy, Rgb::ONE, t, &mut again),
+            ),
+            None => (
+                fan.unguided(medium(), strategy, Rgb::ONE, &mut rng),
+                null(medium(), strategy, Rgb::ONE, &mut again),
+            ),
+        };
+        Drawn { flight, plain, counts: [1.0, fan.sharing.flights] }
+    }
+
+    /// Density of a guide's draws at `t` from nothing but how it draws: the slope of their
+    /// distribution, found by bisection. `None` where it has a step nearby.
+    fn drawn_density(guide: &Guide, t: f32) -> Option<f32> {
+        const STEP: f32 = 4e-3;
+        let both = guide.line.is_some() && guide.light.is_some();
+        let halves = if both { vec![[0.0, 0.5], [0.5, 1.0]] } else { vec![[0.0, 1.0]] };
+        let share_before = |t: f32| -> f64 {
+            let of_part = |&[from, to]: &[f64; 2]| {
+                let (mut low, mut high) = (from, to);
+                for _ in 0..30 {
+                    let middle = 0.5 * (low + high);
+                    if guide.sample(middle as f32) <= t { low = middle } else { high = middle }
+                }
+                low - from
+            };
+            halves.iter().map(of_part).sum()
+        };
+        let slope =
+            |from: f32, to: f32| (share_before(to) - share_before(from)) as f32 / (to - from);
+        let wide = slope(t - STEP, t + STEP);
+        let parts = [slope(t - STEP, t), slope(t, t + STEP), slope(t - 0.2 * STEP, t + 0.2 * STEP)];
+        let smooth = parts.iter().all(|part| (part - wide).abs() < 0.02 * wide);
+        (smooth && wide > 1e-3).then_some(wide)
+    }
+
+    /// Of thousands of paths, by chance and guided: the weight is f over the mixture of both
+    /// densities, that of chance as the walk tells it (which its own tests hold against the
+    /// product) and that of the guide as the slope of how it draws.
+    #[test]
+    fn weights_divide_by_the_mixture_of_what_draws() {
+        let scene = smoke();
+        let probes = Probes::new(&scene).unwrap();
+        let scatter_probability = ScatterProbability::Even;
+        let advanced = Advanced { scatter_probability, ..Advanced::default() };
+        let strategy = Strategy { advanced, ..scene.strategy };
+        let mut checked = [0; 2];
+        for index in 0..8000 {
+            let Some((guide, medium)) = guided_ray(&scene, &probes, index) else { continue };
+            let kind = (index / 3 % 2) as usize;
+            let draw = [one_of_one, one_of_several][kind];
+            let Drawn { flight, plain, counts } = draw(&strategy, &guide, &medium, index);
+            let (Event::Scattered { t, .. }, Event::Scattered { t: same, .. }) =
+                (flight.event, plain.event)
+            else {
+                continue;
+            };
+            assert_eq!(t, same);
+            let Some(pdf_select) = drawn_density(&guide, t) else { continue };
+            let expected = plain.weight * plain.pdf_null
+                / (counts[0] * plain.pdf_null + counts[1] * pdf_select);
+            let error = (flight.weight - expected).abs().max_element();
+            assert!(
+                error <= 0.03 * expected.max_element(),
+                "path {index} at {t}: {} for {expected}",
+                flight.weight
+            );
+            checked[kind] += 1;
+        }
+        assert!(checked[0] > 1000 && checked[1] > 1000, "{checked:?}");
+    }
+}

@@ -68,8 +68,8 @@ fn learned(
     let strategy = Strategy { advanced, ..Preset::Full.strategy() };
     let scene = Scene { max_scatters: turns, strategy, ..scene.clone() };
     let gatherer = Gatherer::at_a_glance();
-    let aids =
-        Aids { gatherer: &gatherer, probes: Some(probes), brightness: Brightness::default() };
+    let brightness = Brightness::default();
+    let aids = Aids { gatherer: &gatherer, probes: Some(probes), brightness, flights: 1.0 };
     let learn = |(node, bounds): &(u32, Aabb)| {
         (!stop()).then(|| (*node, around(&scene, aids, *node, bounds)))
     };

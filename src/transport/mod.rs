@@ -9,10 +9,12 @@ mod march;
 pub mod observer;
 mod optimal;
 pub mod path;
+mod pilot;
 pub mod probes;
 pub mod profile;
 pub mod scene;
 pub mod shadow;
+mod site;
 pub mod strategy;
 mod stratified;
 pub mod tracking;
@@ -21,7 +23,7 @@ mod tuning;
 pub mod vertex;
 mod window;
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::{UVec2, Vec2};
 
@@ -79,6 +81,8 @@ pub struct Frame {
     probes: Option<Arc<Probes>>,
     /// What the probes think of the film.
     brightness: Brightness,
+    /// Guided flights that pay; found when they are first asked for.
+    flights: OnceLock<f32>,
 }
 
 impl Frame {
@@ -101,7 +105,13 @@ impl Frame {
         let gatherer = Gatherer::new(&scene, size);
         let brightness =
             probes.as_ref().map(|probes| Brightness::new(probes, &scene, size)).unwrap_or_default();
-        Self { scene, size, seed, gatherer, probes, brightness }
+        let flights = OnceLock::new();
+        Self { scene, size, seed, gatherer, probes, brightness, flights }
+    }
+
+    /// The same with another seed; all that was found out for the picture stays found.
+    pub fn with_seed(&self, seed: u64) -> Self {
+        Self { seed, ..self.clone() }
     }
 
     /// Pixels across and down.
@@ -118,9 +128,25 @@ impl Frame {
         };
         let offset = Vec2::new(rng.at(Slot::PixelX), rng.at(Slot::PixelY));
         let ray = self.scene.camera.ray(self.size, pixel, offset);
-        let probes = self.probes.as_deref();
-        let aids = Aids { gatherer: &self.gatherer, probes, brightness: self.brightness };
+        // The first sample does not wait for the pilot, so that a camera on the move never does.
+        let learns = self.probes.is_some() && self.scene.strategy.learns_share();
+        let flights = if learns && sample == 0 { pilot::FIRST } else { self.guided_flights() };
+        let aids = self.aids(flights);
         path::trace(&self.scene, aids, ray, &mut rng, observer)
+    }
+
+    fn aids(&self, flights: f32) -> Aids<'_> {
+        let probes = self.probes.as_deref();
+        Aids { gatherer: &self.gatherer, probes, brightness: self.brightness, flights }
+    }
+
+    /// Guided flights of each sample but the first, relative to what the probes propose: those that
+    /// pay in this picture, 0 if none do. Finding out takes a tenth of a second at the first call.
+    pub fn guided_flights(&self) -> f32 {
+        if self.probes.is_none() || !self.scene.strategy.learns_share() {
+            return 1.0;
+        }
+        *self.flights.get_or_init(|| pilot::flights(&self.scene, self.size, |f| self.aids(f)))
     }
 }
 

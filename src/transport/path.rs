@@ -56,12 +56,15 @@ pub struct Aids<'s> {
     pub probes: Option<&'s Probes>,
     /// What the probes think of the film.
     pub brightness: Brightness,
+    /// Guided flights of the camera rays, relative to what the probes propose; 0 asks the probes
+    /// nowhere where scattering pays.
+    pub flights: f32,
 }
 
 impl<'s> Aids<'s> {
     /// The probes, where they say where scattering pays.
     fn guides(&self, strategy: &Strategy) -> Option<&'s Probes> {
-        self.probes.filter(|_| strategy.guides())
+        self.probes.filter(|_| self.flights > 0.0 && strategy.guides())
     }
 }
 
@@ -287,7 +290,8 @@ impl Path<'_> {
         observer: &mut impl Observer,
     ) -> Flight {
         let strategy = &self.scene.strategy;
-        let fan = Fan::new(strategy, guide, self.aids.brightness, rng);
+        let film = self.aids.brightness.scaled(self.aids.flights);
+        let fan = Fan::new(strategy, guide, film, rng);
         self.expected = fan.expected();
         for (index, t) in fan.distances().enumerate() {
             let flight = fan.guided(medium.clone(), strategy, t, self.throughput, rng);

@@ -115,6 +115,7 @@ impl Probes {
                 boost_clamp_voxels: aside.boost_clamp_voxels,
                 distance: if strategy.guides() { aside.distance } else { Distance::Null },
                 scatter_probability: aside.scatter_probability,
+                share_learning: aside.share_learning,
                 tracker: aside.tracker,
                 guide_all_vertices: aside.guide_all_vertices,
                 equiangular: aside.equiangular,

@@ -4,9 +4,9 @@
 use glam::UVec2;
 
 use super::{
-    direct,
+    Frame, direct,
     distance::{self, Sharing},
-    probes::{Brightness, Line, Probes},
+    probes::{Line, Probes},
     scene::Scene,
     tracking::{Gather, exp_neg},
 };
@@ -34,8 +34,10 @@ pub struct Profile {
     pub rows: Vec<Row>,
     /// Optical depth of all of it, of the channels' mean transmittance.
     pub optical_depth: f32,
-    /// Whether anything guides distances along the ray.
+    /// Whether anything could guide distances along the ray.
     pub guided: bool,
+    /// Guided flights relative to what the probes propose; 0 where none pay in this picture.
+    pub flights: f32,
 }
 
 /// What is at one distance.
@@ -62,19 +64,14 @@ pub struct Row {
 }
 
 impl Profile {
-    /// Tabulates `count` rows, two at least, along a camera ray of a film of `size` pixels; `None`
-    /// where it meets no medium.
+    /// Tabulates `count` rows, two at least, along a ray from the camera of `frame`; `None` where it
+    /// meets no medium.
     ///
     /// T is integrated by the midpoint rule. The weights are those of the expected densities, as
     /// they would be were the transmittance known; a path has those of its own null collisions,
     /// which scatter around them.
-    pub fn along(
-        scene: &Scene,
-        probes: Option<&Probes>,
-        size: UVec2,
-        ray: &Ray,
-        count: u32,
-    ) -> Option<Self> {
+    pub fn along(frame: &Frame, ray: &Ray, count: u32) -> Option<Self> {
+        let scene: &Scene = &frame.scene;
         let end = surface::intersect(&scene.surfaces, ray);
         let medium = scene.world.along(*ray, end.map_or(f32::INFINITY, |end| end.hit.t));
         let (t0, end) = medium.extent()?;
@@ -89,18 +86,19 @@ impl Profile {
             .collect();
         let gather = Gather::of(&scene.strategy);
         let optical_depth = read_medium(medium.clone(), gather, &mut rows, step);
-        let guides = probes.filter(|_| scene.strategy.guides());
+        let guides = frame.probes.as_deref().filter(|_| scene.strategy.guides());
+        let flights = frame.guided_flights();
         let guided = guides.is_some_and(|probes| {
             let line = probes.along(medium, ray);
-            let brightness = Brightness::new(probes, scene, size);
-            let sharing = Sharing::new(&scene.strategy, line.as_ref(), &brightness);
+            let film = frame.brightness.scaled(flights);
+            let sharing = Sharing::new(&scene.strategy, line.as_ref(), &film);
             let lights = match scene.strategy.advanced.equiangular {
                 true => points_of_light(scene, probes, ray, [t0, end]),
                 false => Vec::new(),
             };
             guide(line.as_ref(), &lights, &sharing, &mut rows)
         });
-        Some(Self { rows, optical_depth, guided })
+        Some(Self { rows, optical_depth, guided, flights })
     }
 }
 

@@ -95,6 +95,10 @@ pub struct Advanced {
     /// With the probes on: let them learn from a few paths, before the picture begins, what light
     /// comes to them after it has scattered or come off surfaces. Takes longer to prepare.
     pub probe_learning: bool,
+    /// With the probes on: find out, before the second sample, how often to ask them in this shot:
+    /// as often as pays, down to not at all where they cost more than they bring. Off, they are
+    /// asked as often as they propose.
+    pub share_learning: bool,
     /// Ask the probes at the first bounces as well, not only along the rays from the camera.
     pub guide_all_vertices: bool,
     /// With the probes on: also scatter near the point that light comes from, by equal angles of
@@ -272,6 +276,11 @@ impl Strategy {
         None
     }
 
+    /// Whether a pilot decides how often the probes are asked; not where nothing else is.
+    pub fn learns_share(&self) -> bool {
+        self.guides() && self.advanced.share_learning && self.advanced.distance == Distance::Mis
+    }
+
     /// Whether probes say where paths scatter.
     pub fn guides(&self) -> bool {
         self.probe_mis && self.advanced.distance != Distance::Null && !self.is_biased()
@@ -299,6 +308,7 @@ impl Default for Advanced {
             tracker: Tracker::default(),
             probe_count: 4096,
             probe_learning: true,
+            share_learning: true,
             guide_all_vertices: false,
             equiangular: true,
             guide_directions: true,

@@ -5,19 +5,17 @@
 //! few camera rays before the first sample, with random numbers that no picture uses and costs
 //! counted in steps, so that the same scene on the same film always gets the same k.
 
-use glam::{UVec2, Vec2};
+use glam::UVec2;
 
 use super::{
     emission::{Errand, Gatherer},
     observer::Nobody,
-    path::{self, Aids},
+    path::Aids,
     probes::Brightness,
     scene::Scene,
+    site::{Site, half_square},
 };
-use crate::{
-    math::{PathRng, Ray, luminance},
-    surface,
-};
+use crate::math::luminance;
 
 /// Pixels with something that glows in them that are measured at most.
 const MOST_SITES: u32 = 192;
@@ -36,8 +34,6 @@ const UNMEASURED: f32 = 32.0;
 const DEAREST: f64 = 8.0;
 /// The range of the answer.
 const RANGE: [f64; 2] = [1.0, 4096.0];
-/// Fixed, and like the samples it is used with none that a picture is likely to have.
-const SEED: u64 = 0x6f70_7469_6d61_6c21;
 
 /// The k that lowers variance times cost most for camera rays of `scene` on a film of `size`.
 pub(super) fn looks(scene: &Scene, size: UVec2) -> f32 {
@@ -86,7 +82,7 @@ impl Measured {
             self.walk_steps[i] += 0.5 * (f64::from(a.1) + f64::from(b.1));
             self.spent = self.spent.saturating_add(a.1).saturating_add(b.1);
         }
-        let [a, b] = [0, 1].map(|path| site.path(TRIED[1], path));
+        let [a, b] = [0, 1].map(|path| site.looking(TRIED[1], path));
         self.path_variance += half_square(a.0 - b.0);
         self.path_steps += 0.5 * (f64::from(a.1) + f64::from(b.1));
         self.spent = self.spent.saturating_add(a.1).saturating_add(b.1);
@@ -113,36 +109,7 @@ impl Measured {
     }
 }
 
-fn half_square(difference: f64) -> f64 {
-    0.5 * difference * difference
-}
-
-/// A pixel and two rays through it.
-struct Site<'s> {
-    scene: &'s Scene,
-    pixel: UVec2,
-    rays: [Ray; 2],
-}
-
-impl<'s> Site<'s> {
-    /// Number `index` of a sequence that covers the film evenly (Roberts 2018, R₂).
-    fn new(scene: &'s Scene, size: UVec2, index: u32) -> Self {
-        const STEP: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_2];
-        let place = STEP.map(|step| (0.5 + step * f64::from(index)).fract() as f32);
-        let pixel = (Vec2::from_array(place) * size.as_vec2()).as_uvec2().min(size - UVec2::ONE);
-        let mut rng = PathRng::new(SEED, pixel, u32::MAX);
-        let rays = [(); 2].map(|()| {
-            let offset = Vec2::new(rng.uniform(), rng.uniform());
-            scene.camera.ray(size, pixel, offset)
-        });
-        Self { scene, pixel, rays }
-    }
-
-    fn end(&self) -> f32 {
-        surface::intersect(&self.scene.surfaces, &self.rays[0])
-            .map_or(f32::INFINITY, |end| end.hit.t)
-    }
-
+impl Site<'_> {
     /// Whether the first ray meets anything that may glow; adds the segments it took to know.
     fn glows(&self, spent: &mut u32) -> bool {
         let mut medium = self.scene.world.along(self.rays[0], self.end());
@@ -158,33 +125,35 @@ impl<'s> Site<'s> {
     /// The emission that walk `number` gathers along the first ray, and its steps.
     fn walk(&self, looks: f32, number: u32) -> (f64, u32) {
         let medium = self.scene.world.along(self.rays[0], self.end());
-        let mut rng = PathRng::new(SEED, self.pixel, u32::MAX - 1 - number);
+        let mut rng = self.rng(number);
         let glow = Gatherer::optimal(looks).gather(medium, Errand::Camera, &mut rng);
         (f64::from(luminance(glow.emission)), glow.collisions)
     }
 
     /// What a path along ray `number` brings, and its steps.
-    fn path(&self, looks: f32, number: u32) -> (f64, u32) {
-        let mut rng = PathRng::new(SEED, self.pixel, u32::MAX - 8 - number);
-        let aids = Aids {
-            gatherer: &Gatherer::optimal(looks),
-            probes: None,
-            brightness: Brightness::default(),
-        };
-        let ray = self.rays[number as usize];
-        let sample = path::trace(self.scene, aids, ray, &mut rng, &mut Nobody);
+    fn looking(&self, looks: f32, number: u32) -> (f64, u32) {
+        let gatherer = Gatherer::optimal(looks);
+        let sample = self.path(unguided(&gatherer), number as usize, 7 + number, &mut Nobody);
         (f64::from(luminance(sample.beauty())), sample.tracking_steps)
     }
+}
+
+fn unguided(gatherer: &Gatherer) -> Aids<'_> {
+    Aids { gatherer, probes: None, brightness: Brightness::default(), flights: 0.0 }
 }
 
 #[cfg(test)]
 mod tests {
     use std::path::Path;
 
+    use glam::Vec2;
+
     use super::*;
     use crate::{
         error::NO_PROGRESS,
+        math::PathRng,
         scene::{self, Overrides, VolumeCache},
+        transport::path,
     };
 
     const SIZE: UVec2 = UVec2::new(24, 24);
@@ -225,11 +194,8 @@ mod tests {
     /// Variance of independent samples times their cost, over the whole film.
     fn variance_times_cost(scene: &Scene, looks: f32) -> f64 {
         const SAMPLES: u32 = 64;
-        let aids = Aids {
-            gatherer: &Gatherer::optimal(looks),
-            probes: None,
-            brightness: Brightness::default(),
-        };
+        let gatherer = Gatherer::optimal(looks);
+        let aids = unguided(&gatherer);
         let (mut variance, mut steps) = (0.0, 0.0);
         for i in 0..SIZE.element_product() {
             let pixel = UVec2::new(i % SIZE.x, i / SIZE.x);

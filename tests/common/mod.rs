@@ -6,7 +6,10 @@
 //! 5 % in any of them is found with near certainty.
 #![allow(dead_code)]
 
-use std::{path::Path, sync::Arc};
+use std::{
+    path::Path,
+    sync::{Arc, Mutex},
+};
 
 use flambeau::{
     error::NO_PROGRESS,
@@ -15,6 +18,7 @@ use flambeau::{
     scene::{self, Overrides, VolumeCache},
     transport::{
         Frame, PathSample, PixelSampler, Scene,
+        probes::Probes,
         strategy::{
             Advanced, BoostMode, Distance, LightSelection, NeeEvaluation, ScatterProbability,
             Strategy, TransmittanceEstimator,
@@ -68,12 +72,17 @@ pub fn with_strategy(scene: &Scene, strategy: Strategy) -> Scene {
     Scene { strategy, ..scene.clone() }
 }
 
-/// Every combination of the toggles.
+/// The finer keys at their defaults, but for the probes, which are asked whether that pays or not.
+pub fn asking() -> Advanced {
+    Advanced { share_learning: false, ..Advanced::default() }
+}
+
+/// Every combination of the toggles, with few guided flights.
 pub fn all_strategies() -> Vec<Strategy> {
     (0..32).map(toggles).collect()
 }
 
-/// Half of them, in which every combination of any four occurs.
+/// Half of [`all_strategies`], in which every combination of any four occurs.
 pub fn half_of_strategies() -> Vec<Strategy> {
     (0..32_u32).filter(|bits| bits.count_ones() % 2 == 1).map(toggles).collect()
 }
@@ -85,6 +94,7 @@ fn toggles(bits: u32) -> Strategy {
         majorant_boost: bits & 4 != 0,
         nee: bits & 8 != 0,
         probe_mis: bits & 16 != 0,
+        advanced: Advanced { scatter_probability: ScatterProbability::Even, ..asking() },
         ..Strategy::default()
     }
 }
@@ -125,7 +135,7 @@ pub fn finer() -> [Advanced; 8] {
             equiangular: !c,
             guide_directions: !(a ^ c),
             guide_all_vertices: b ^ c,
-            ..Advanced::default()
+            ..asking()
         }
     })
 }
@@ -140,7 +150,7 @@ pub fn every_guide() -> Vec<Strategy> {
                 equiangular: bits & 1 != 0,
                 guide_directions: bits & 2 != 0,
                 guide_all_vertices: bits & 4 != 0,
-                ..Advanced::default()
+                ..asking()
             };
             all.push(Strategy { advanced, ..Strategy::default() });
         }
@@ -194,6 +204,7 @@ fn effective(mut strategy: Strategy) -> Strategy {
     if !strategy.probe_mis {
         advanced.distance = plain.distance;
         advanced.scatter_probability = plain.scatter_probability;
+        advanced.share_learning = plain.share_learning;
         advanced.equiangular = plain.equiangular;
         advanced.guide_directions = plain.guide_directions;
         advanced.guide_all_vertices = plain.guide_all_vertices;
@@ -237,21 +248,42 @@ pub fn name(strategy: &Strategy) -> String {
     .collect()
 }
 
+/// Probes by the scene they were placed in.
+type Placed = Vec<(Scene, Option<Arc<Probes>>)>;
+
+/// A scene on a square film. Strategies that ask for the same probes of one scene share them, as in
+/// the window: to place them anew for each of a hundred settings takes longer than the paths.
+pub fn framed(scene: &Scene, side: u32) -> Frame {
+    static PLACED: Mutex<Placed> = Mutex::new(Vec::new());
+    let same = |(other, _): &&(Scene, Option<Arc<Probes>>)| {
+        let [one, two] = [scene, other].map(|scene| scene.world.instances());
+        let same_build = std::iter::zip(one, two).all(|(a, b)| Arc::ptr_eq(a.volume(), b.volume()));
+        same_build
+            && one.len() == two.len()
+            && Probes::recipe(&scene.strategy) == Probes::recipe(&other.strategy)
+    };
+    let known = PLACED.lock().unwrap().iter().find(same).map(|(_, probes)| probes.clone());
+    let probes = known.unwrap_or_else(|| {
+        let probes = Probes::new(scene).map(Arc::new);
+        PLACED.lock().unwrap().push((scene.clone(), probes.clone()));
+        probes
+    });
+    Frame::with_probes(Arc::new(scene.clone()), UVec2::splat(side), seed(), probes)
+}
+
 /// Side of the film that single-value scenes are rendered on.
 const SIDE: u32 = 64;
 
 /// The mean over the whole film of what `of` takes from each path, and its variance as the film's
 /// accumulators tell it, which holds for samples that depend on each other too.
 pub fn measure_with(scene: &Scene, paths: u32, of: impl Fn(&PathSample) -> Rgb + Sync) -> Estimate {
-    let frame = Frame::new(Arc::new(scene.clone()), UVec2::splat(SIDE), seed());
-    measure_in_turn(&[frame], paths, of)
+    measure_in_turn(&[framed(scene, SIDE)], paths, of)
 }
 
 /// The mean radiance over the whole film where one scene takes over from the other, each with as
 /// many of the samples.
 pub fn measure_one_after_another(scenes: &[Scene], paths: u32) -> Estimate {
-    let frame = |scene: &Scene| Frame::new(Arc::new(scene.clone()), UVec2::splat(SIDE), seed());
-    let frames: Vec<Frame> = scenes.iter().map(frame).collect();
+    let frames: Vec<Frame> = scenes.iter().map(|scene| framed(scene, SIDE)).collect();
     measure_in_turn(&frames, paths, PathSample::beauty)
 }
 

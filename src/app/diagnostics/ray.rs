@@ -11,9 +11,9 @@ use crate::app::engine::Engine;
 use crate::app::theme::{color, space};
 use crate::app::viewport::View;
 use crate::app::widgets::significant;
-use crate::transport::Scene;
 use crate::transport::probes::Probes;
 use crate::transport::profile::{Profile, Row};
+use crate::transport::{Frame, Scene};
 
 /// Rows of the table behind the curves.
 const ROWS: u32 = 300;
@@ -114,7 +114,8 @@ impl Source {
 
     fn profile(&self) -> Option<Profile> {
         let ray = self.scene.camera.ray(self.size, self.pixel, Vec2::splat(0.5));
-        Profile::along(&self.scene, self.probes.as_deref(), self.size, &ray, ROWS)
+        let frame = Frame::with_probes(self.scene.clone(), self.size, 0, self.probes.clone());
+        Profile::along(&frame, &ray, ROWS)
     }
 }
 
@@ -182,7 +183,11 @@ impl Inspector {
             return;
         };
         let depth = significant(f64::from(profile.optical_depth));
-        let guided = if profile.guided { "" } else { ", no probes" };
+        let guided = match profile {
+            Profile { guided: false, .. } => ", no probes",
+            Profile { flights: 0.0, .. } => ", probes not asked: they don't pay in this picture",
+            _ => "",
+        };
         ui.label(format!("Pixel {x}, {y}: optical depth {depth}{guided}"));
         let at = self.at.unwrap_or_else(|| most_telling(&profile.rows));
         let read = ui

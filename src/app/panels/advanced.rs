@@ -118,6 +118,7 @@ fn guided_scattering(
         }
         for (value, name, key) in [
             (&mut advanced.probe_learning, "Learn", "strategy.advanced.probe_learning"),
+            (&mut advanced.share_learning, "Only what pays", "strategy.advanced.share_learning"),
             (&mut advanced.equiangular, "Equal angles", "strategy.advanced.equiangular"),
             (
                 &mut advanced.guide_directions,

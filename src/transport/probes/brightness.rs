@@ -39,6 +39,13 @@ impl Brightness {
     }
 }
 
+impl Brightness {
+    /// With so many times the guided flights.
+    pub fn scaled(self, flights: f32) -> Self {
+        Self { share: self.share * flights, ..self }
+    }
+}
+
 /// Light that is scattered into ray number `index` and light that is reflected into it.
 fn light_along(probes: &Probes, scene: &Scene, size: UVec2, index: u32) -> [f32; 2] {
     let cell = UVec2::new(index % SIDE, index / SIDE).as_vec2() + Vec2::splat(0.5);

@@ -1,0 +1,221 @@
+//! How many guided flights pay for a shot, if any: a pilot tries, before the second sample.
+//!
+//! Probes cost time along every ray, and each guided flight is a path. Inside of smoke with a lamp
+//! in it they lower the noise a hundred times; a cloud under an even sky, or fire that hardly
+//! scatters, looks the same without them and takes half of the time. So each of a few shares is
+//! tried on some pixels, and the one with the least variance times cost is taken.
+//!
+//! Costs are counted, not timed, and the random numbers are none of the picture's, so that the same
+//! scene on the same film always gets the same share. Unbiased whichever that is.
+
+use glam::UVec2;
+
+use super::{
+    observer::{Observer, Step},
+    path::Aids,
+    scene::Scene,
+    site::{Site, half_square},
+};
+use crate::math::luminance;
+
+/// The shares that are tried, relative to the flights that the probes propose.
+const TRIED: [f32; 4] = [0.0, 0.06, 0.25, 1.0];
+/// The share of samples that don't wait for the pilot.
+pub(super) const FIRST: f32 = 0.25;
+/// What is spent on each share, in tracking steps.
+const BUDGET: f64 = 262_144.0;
+/// Most pixels that a share is tried on.
+const MOST_SITES: usize = 1 << 14;
+/// What a ray or a vertex costs beside the steps, and what guides do along a ray, counted in steps.
+/// Measured on the scenes of the noise benchmark: good to a factor of two, and between two shares
+/// of one scene to a quarter.
+const RAY_COST: f64 = 11.0;
+const GUIDE_COST: f64 = 26.0;
+/// How much of the noise counts that no share lowers. Evenly spread samples take the rest of it.
+const OTHER_NOISE: f64 = 0.5;
+/// Pixels with most of it, which don't count: lights that are seen directly.
+const OUTLIERS: f64 = 0.02;
+
+/// The share that lowers variance times cost most for `scene` on a film of `size`; `aids` are those
+/// of a share.
+pub(super) fn flights<'s>(
+    scene: &Scene,
+    size: UVec2,
+    aids: impl Fn(f32) -> Aids<'s> + Sync,
+) -> f32 {
+    if size.min_element() == 0 {
+        return FIRST;
+    }
+    let mut trials = [Trial::default(); TRIED.len()];
+    // Threads of their own: a worker that waits here for others might take up a sample meanwhile
+    // that waits for this.
+    std::thread::scope(|scope| {
+        for (trial, share) in trials.iter_mut().zip(TRIED) {
+            let aids = aids(share);
+            scope.spawn(move || *trial = Trial::new(scene, size, aids));
+        }
+    });
+    best(&trials)
+}
+
+/// The share with the least variance times cost.
+fn best(trials: &[Trial; TRIED.len()]) -> f32 {
+    let other = trials.iter().map(|trial| trial.other).sum::<f64>() / trials.len() as f64;
+    let (mut least, mut best) = (f64::INFINITY, FIRST);
+    for (share, trial) in TRIED.into_iter().zip(trials) {
+        let product = (trial.variance + OTHER_NOISE * other) * trial.cost;
+        if product < least {
+            (least, best) = (product, share);
+        }
+    }
+    best
+}
+
+/// What a share brought.
+#[derive(Clone, Copy, Debug, Default)]
+struct Trial {
+    /// Mean over the pixels of the variance of the light that is scattered or reflected to them.
+    variance: f64,
+    /// Of all other light.
+    other: f64,
+    /// Mean cost of a sample, in steps.
+    cost: f64,
+}
+
+impl Trial {
+    fn new(scene: &Scene, size: UVec2, aids: Aids<'_>) -> Self {
+        let (mut squares, mut spent, mut others) = (0.0, 0.0, Vec::new());
+        while spent < BUDGET && others.len() < MOST_SITES {
+            let site = Site::new(scene, size, others.len() as u32);
+            let guides = if aids.flights > 0.0 && site.meets_medium() { GUIDE_COST } else { 0.0 };
+            let [a, b] = [0, 1].map(|number| {
+                let mut effort = Effort::default();
+                let sample = site.path(aids, 0, number, &mut effort);
+                spent += f64::from(sample.tracking_steps) + RAY_COST * effort.rays + guides;
+                [sample.direct + sample.indirect, sample.emission + sample.background]
+                    .map(|light| f64::from(luminance(light)))
+            });
+            squares += half_square(a[0] - b[0]);
+            others.push(half_square(a[1] - b[1]));
+        }
+        let sites = others.len();
+        others.sort_by(f64::total_cmp);
+        others.truncate(sites - (OUTLIERS * sites as f64) as usize);
+        let mean = |sum: f64, count: usize| {
+            let mean = sum / count as f64;
+            if mean.is_finite() { mean } else { f64::INFINITY }
+        };
+        Self {
+            variance: mean(squares, sites),
+            other: mean(others.iter().sum(), others.len()),
+            cost: 0.5 * spent / sites as f64,
+        }
+    }
+}
+
+/// Counts what a path does.
+#[derive(Default)]
+struct Effort {
+    /// Rays and vertices.
+    rays: f64,
+}
+
+impl Observer for Effort {
+    fn step(&mut self, step: Step) {
+        if matches!(step, Step::Ray { .. } | Step::Vertex { .. }) {
+            self.rays += 1.0;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::{path::Path, sync::Arc};
+
+    use super::*;
+    use crate::{
+        error::NO_PROGRESS,
+        scene::{self, Overrides, VolumeCache},
+        transport::Frame,
+    };
+
+    const SIZE: UVec2 = UVec2::new(48, 32);
+
+    /// A cloud under an even sky.
+    const CLOUD: &str = r#"
+        [camera]
+        position = [0, -4, 0]
+        target = [0, 0, 0]
+        [environment]
+        radiance = 1.0
+        [[volume]]
+        shape = "noise"
+        half_size = 1.0
+        frequency = 2.0
+        density = { scale = 6.0 }
+        albedo = 0.999
+        phase = { g = 0.8 }
+    "#;
+
+    /// A small lamp inside of thin smoke.
+    const LAMP: &str = r#"
+        [camera]
+        position = [0, -4, 0]
+        target = [0, 0, 0]
+        [[volume]]
+        shape = "box"
+        half_size = 1.0
+        density = { scale = 0.3 }
+        albedo = 0.9
+        [[light]]
+        type = "sphere"
+        center = [0.1, 0.1, 0.1]
+        radius = 0.01
+        radiance = 100.0
+    "#;
+
+    fn frame(text: &str) -> Frame {
+        let settings = scene::parse(text, "test", Path::new("."), &Overrides::default()).unwrap();
+        let scene = scene::build(&settings, &VolumeCache::default(), NO_PROGRESS).unwrap();
+        Frame::new(Arc::new(scene), SIZE, 0)
+    }
+
+    #[test]
+    fn probes_are_asked_where_that_pays() {
+        assert_eq!(frame(CLOUD).guided_flights(), 0.0);
+        assert!(frame(LAMP).guided_flights() >= 0.25);
+        for (key, flights) in [("share_learning = false", 1.0), ("distance = 'probes'", 1.0)] {
+            let text = format!("{CLOUD}\n[strategy.advanced]\n{key}");
+            assert_eq!(frame(&text).guided_flights(), flights, "{key}");
+        }
+    }
+
+    /// Each share is found best where it is.
+    #[test]
+    fn the_least_variance_times_cost_is_best() {
+        let trial = |variance, cost| Trial { variance, other: 1.0, cost };
+        for (variances, costs, share) in [
+            ([1.0, 1.0, 1.0, 1.0], [1.0, 2.0, 3.0, 4.0], 0.0),
+            ([9.0, 1.0, 0.9, 0.8], [1.0, 2.0, 3.0, 4.0], 0.06),
+            ([9.0, 9.0, 1.0, 0.9], [1.0, 2.0, 3.0, 4.0], 0.25),
+            ([99.0, 50.0, 20.0, 1.0], [1.0, 2.0, 3.0, 4.0], 1.0),
+            // What no share lowers makes the cheapest best.
+            ([0.3, 0.2, 0.1, 0.0], [1.0, 2.0, 3.0, 4.0], 0.0),
+            ([f64::NAN; 4], [1.0; 4], FIRST),
+        ] {
+            let trials = std::array::from_fn(|i| trial(variances[i], costs[i]));
+            assert_eq!(best(&trials), share, "{variances:?}");
+        }
+    }
+
+    /// Whoever asks first, however many others wait: from the second sample on all is as found.
+    #[test]
+    fn whoever_asks_gets_the_same() {
+        use rayon::prelude::*;
+        let alone = frame(LAMP);
+        let expected = alone.guided_flights();
+        let shared = frame(LAMP);
+        let found: Vec<f32> = (0..64).into_par_iter().map(|_| shared.guided_flights()).collect();
+        assert!(found.iter().all(|flights| *flights == expected), "{expected}, {found:?}");
+    }
+}
