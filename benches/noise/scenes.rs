@@ -97,6 +97,14 @@ pub fn all() -> Vec<BenchScene> {
             tables: &[Table::Distances],
             ..own("shafts", "sun and spot through gaps into uneven mist", "shafts.toml")
         },
+        BenchScene {
+            tables: &[Table::Distances],
+            ..own("caustic", "a mirror throws light into mist", "caustic.toml")
+        },
+        BenchScene {
+            tables: &[Table::Distances],
+            ..own("caustic_unfolded", "the same light without a mirror", "caustic_unfolded.toml")
+        },
         own("no_soot", "fire without extinction, on a floor", "no_soot.toml"),
         own("chromatic_smoke", "smoke that colors what shines through", "chromatic_smoke.toml"),
         lamps("lamps_thin", "lamps around thin smoke", &["volume.0.density.scale=1.0"]),

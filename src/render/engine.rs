@@ -100,7 +100,10 @@ impl Engine {
         let cost = start.elapsed().as_secs_f64();
         self.seconds += cost;
         self.schedule.published(self.seconds, cost);
-        render_stats(&self.film, self.seconds, noise, self.is_finished())
+        RenderStats {
+            guided_flights: self.sampler.found_flights(),
+            ..render_stats(&self.film, self.seconds, noise, self.is_finished())
+        }
     }
 
     /// Whether the limit is reached.

@@ -50,6 +50,10 @@ pub struct RenderStats {
     pub guard_hits: u64,
     /// Relative standard error of the picture, see [`FilmStats::noise`]; none before two samples.
     pub noise: Option<f64>,
+    /// How often probes are asked, see [`PixelSampler::found_flights`].
+    ///
+    /// [`PixelSampler::found_flights`]: crate::transport::PixelSampler::found_flights
+    pub guided_flights: Option<f32>,
     /// Whether the limit is reached.
     pub finished: bool,
 }
@@ -135,6 +139,7 @@ pub(crate) fn render_stats(
         non_finite: film.totals.non_finite,
         guard_hits: film.totals.guard_hits,
         noise,
+        guided_flights: None,
         finished,
     }
 }

@@ -12,8 +12,8 @@ use glam::{UVec2, Vec3A};
 use rayon::prelude::*;
 
 use super::{
+    effort::Effort,
     emission::Gatherer,
-    observer::Nobody,
     path::{self, Aids},
     probes::{Brightness, Indirect, Probes, SEED},
     scene::Scene,
@@ -26,8 +26,8 @@ use crate::{
 
 /// Most paths from each probe.
 const PATHS: u32 = 16;
-/// Tentative collisions of a probe's paths after which no other sets out.
-const STEPS: u32 = 1024;
+/// Cost of a probe's paths, in tracking steps, after which no other sets out.
+const EFFORT: f64 = 1536.0;
 /// Turns after which they end: later ones bring little that would move a probe.
 const MOST_TURNS: u32 = 64;
 /// Steps of two numbers that fill the unit square evenly, however many there are (Roberts 2018).
@@ -81,17 +81,18 @@ fn around(scene: &Scene, aids: Aids<'_>, node: u32, bounds: &Aabb) -> Indirect {
     let mut indirect = Indirect::default();
     let mut rng = PathRng::new(SEED, UVec2::new(node, 2), PATHS);
     let begin = [rng.uniform(), rng.uniform()];
-    let (mut paths, mut steps) = (0, 0);
-    while paths < PATHS && steps < STEPS {
+    let (mut paths, mut spent) = (0, 0.0);
+    while paths < PATHS && spent < EFFORT {
         let mut rng = PathRng::new(SEED, UVec2::new(node, 2), paths);
         let u = Vec3A::new(rng.uniform(), rng.uniform(), rng.uniform());
         let even = |k: usize| (begin[k] + paths as f32 * EVEN_STEPS[k]).fract();
         let direction = spherical(1.0 - 2.0 * even(0), TAU * even(1));
         let ray = Ray::new(bounds.min + u * bounds.size(), direction);
-        let sample = path::trace(scene, aids, ray, &mut rng, &mut Nobody);
+        let mut effort = Effort::default();
+        let sample = path::trace(scene, aids, ray, &mut rng, &mut effort);
         indirect.add(direction, 4.0 * PI * luminance(sample.direct + sample.indirect));
         paths += 1;
-        steps = sample.tracking_steps.saturating_add(steps);
+        spent += effort.of(&sample);
     }
     indirect.scaled(1.0 / paths.max(1) as f32)
 }

@@ -3,6 +3,7 @@
 pub mod camera;
 pub mod direct;
 mod distance;
+mod effort;
 pub mod emission;
 mod learning;
 mod march;
@@ -67,6 +68,12 @@ impl PathSample {
 pub trait PixelSampler: Send + Sync {
     /// The path of this sample of this pixel; the same arguments give the same path.
     fn sample(&self, pixel: UVec2, sample: u32) -> PathSample;
+
+    /// How often probes are asked, relative to what they propose; `None` until that is found out,
+    /// and where it never is.
+    fn found_flights(&self) -> Option<f32> {
+        None
+    }
 }
 
 /// A scene framed on a film.
@@ -153,5 +160,9 @@ impl Frame {
 impl PixelSampler for Frame {
     fn sample(&self, pixel: UVec2, sample: u32) -> PathSample {
         self.trace(pixel, sample, &mut Nobody)
+    }
+
+    fn found_flights(&self) -> Option<f32> {
+        self.flights.get().copied()
     }
 }

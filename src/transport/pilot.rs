@@ -11,7 +11,7 @@
 use glam::UVec2;
 
 use super::{
-    observer::{Observer, Step},
+    effort::Effort,
     path::Aids,
     scene::Scene,
     site::{Site, half_square},
@@ -26,15 +26,14 @@ pub(super) const FIRST: f32 = 0.25;
 const BUDGET: f64 = 262_144.0;
 /// Most pixels that a share is tried on.
 const MOST_SITES: usize = 1 << 14;
-/// What a ray or a vertex costs beside the steps, and what guides do along a ray, counted in steps.
-/// Measured on the scenes of the noise benchmark: good to a factor of two, and between two shares
-/// of one scene to a quarter.
-const RAY_COST: f64 = 11.0;
+/// What it costs to ask the probes along a ray, in tracking steps. Measured as the rest is.
 const GUIDE_COST: f64 = 26.0;
 /// How much of the noise counts that no share lowers. Evenly spread samples take the rest of it.
 const OTHER_NOISE: f64 = 0.5;
 /// Pixels with most of it, which don't count: lights that are seen directly.
 const OUTLIERS: f64 = 0.02;
+/// By how much guided flights have to be better than none, which the pilot knows to a fifth.
+const MARGIN: f64 = 0.8;
 
 /// The share that lowers variance times cost most for `scene` on a film of `size`; `aids` are those
 /// of a share.
@@ -58,12 +57,13 @@ pub(super) fn flights<'s>(
     best(&trials)
 }
 
-/// The share with the least variance times cost.
+/// The share with the least variance times cost, if it is clearly better than none.
 fn best(trials: &[Trial; TRIED.len()]) -> f32 {
     let other = trials.iter().map(|trial| trial.other).sum::<f64>() / trials.len() as f64;
     let (mut least, mut best) = (f64::INFINITY, FIRST);
     for (share, trial) in TRIED.into_iter().zip(trials) {
-        let product = (trial.variance + OTHER_NOISE * other) * trial.cost;
+        let margin = if share > 0.0 { 1.0 } else { MARGIN };
+        let product = (trial.variance + OTHER_NOISE * other) * trial.cost * margin;
         if product < least {
             (least, best) = (product, share);
         }
@@ -91,7 +91,7 @@ impl Trial {
             let [a, b] = [0, 1].map(|number| {
                 let mut effort = Effort::default();
                 let sample = site.path(aids, 0, number, &mut effort);
-                spent += f64::from(sample.tracking_steps) + RAY_COST * effort.rays + guides;
+                spent += effort.of(&sample) + guides;
                 [sample.direct + sample.indirect, sample.emission + sample.background]
                     .map(|light| f64::from(luminance(light)))
             });
@@ -109,21 +109,6 @@ impl Trial {
             variance: mean(squares, sites),
             other: mean(others.iter().sum(), others.len()),
             cost: 0.5 * spent / sites as f64,
-        }
-    }
-}
-
-/// Counts what a path does.
-#[derive(Default)]
-struct Effort {
-    /// Rays and vertices.
-    rays: f64,
-}
-
-impl Observer for Effort {
-    fn step(&mut self, step: Step) {
-        if matches!(step, Step::Ray { .. } | Step::Vertex { .. }) {
-            self.rays += 1.0;
         }
     }
 }
@@ -201,6 +186,9 @@ mod tests {
             ([99.0, 50.0, 20.0, 1.0], [1.0, 2.0, 3.0, 4.0], 1.0),
             // What no share lowers makes the cheapest best.
             ([0.3, 0.2, 0.1, 0.0], [1.0, 2.0, 3.0, 4.0], 0.0),
+            // Hardly better than none is not clearly better.
+            ([1.0, 0.9, 2.0, 2.0], [1.0, 1.0, 1.0, 1.0], 0.0),
+            ([1.0, 0.2, 2.0, 2.0], [1.0, 1.0, 1.0, 1.0], 0.06),
             ([f64::NAN; 4], [1.0; 4], FIRST),
         ] {
             let trials = std::array::from_fn(|i| trial(variances[i], costs[i]));

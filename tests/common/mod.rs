@@ -331,10 +331,19 @@ pub fn measure(scene: &Scene, paths: u32) -> Estimate {
 /// The mean radiance over the whole film, of so many paths as bring its standard error to
 /// [`POWER`], and `most` at most. How many that is, a first few of them tell by their variance.
 pub fn measure_enough(scene: &Scene, most: u32) -> Estimate {
+    measure_to(scene, most, POWER)
+}
+
+/// The same to half of [`POWER`], to hold others against.
+pub fn measure_closely(scene: &Scene, most: u32) -> Estimate {
+    measure_to(scene, most, 0.5 * POWER)
+}
+
+fn measure_to(scene: &Scene, most: u32, power: f64) -> Estimate {
     const MARGIN: f64 = 0.85;
     let reached = |estimate: &Estimate| {
         let relative = |channel: usize| estimate.error(channel) / estimate.mean[channel].abs();
-        let worst = (0..3).map(relative).fold(0.0, f64::max) / POWER;
+        let worst = (0..3).map(relative).fold(0.0, f64::max) / power;
         if worst.is_finite() { worst } else { f64::INFINITY }
     };
     let few = (most / 16).max(16 * SIDE * SIDE).min(most);

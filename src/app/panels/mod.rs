@@ -28,6 +28,8 @@ pub struct Panel<'a> {
     pub grids: &'a Grids,
     /// What was guessed when a bare volume was opened, one a line.
     pub notes: &'a [String],
+    /// How often probes are asked in the picture, relative to what they propose, if that is known.
+    pub guided_flights: Option<f32>,
     /// What is shown to understand the render.
     pub wanted: &'a mut Wanted,
     /// Commands that buttons ask for.

@@ -77,7 +77,9 @@ fn row_of(ui: &mut Ui, panel: &mut Panel<'_>, toggle: Toggle, command: Command, 
     });
     ui.indent(key, |ui| {
         explain(ui, &key_summary(key));
-        if let Some(reason) = idle {
+        let unpaid = toggle == Toggle::Probes && panel.guided_flights == Some(0.0);
+        let unpaid = unpaid.then_some("in this picture probes would cost more than they bring.");
+        if let Some(reason) = idle.or(unpaid) {
             let text = format!("No effect here: {reason}");
             ui.add(egui::Label::new(RichText::new(text).small().color(color::WARNING)).wrap());
         }

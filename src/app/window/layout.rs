@@ -22,6 +22,7 @@ impl App {
             editor: &mut self.editor,
             grids: &grids,
             notes: &self.notes,
+            guided_flights: self.engine.picture().and_then(|p| p.stats.guided_flights),
             wanted: &mut self.diagnostics.wanted,
             commands,
         };
