@@ -22,16 +22,12 @@ use crate::math::luminance;
 const TRIED: [f32; 4] = [0.0, 0.06, 0.25, 1.0];
 /// The share of samples that don't wait for the pilot.
 pub(super) const FIRST: f32 = 0.25;
-/// What is spent on each share, in tracking steps.
-const BUDGET: f64 = 262_144.0;
+/// What is spent on each share, in tracking steps of one of two paths at each pixel.
+const BUDGET: f64 = 131_072.0;
 /// Most pixels that a share is tried on.
-const MOST_SITES: usize = 1 << 14;
+const MOST_SITES: u32 = 1 << 14;
 /// What it costs to ask the probes along a ray, in tracking steps. Measured as the rest is.
 const GUIDE_COST: f64 = 26.0;
-/// How much of the noise counts that no share lowers. Evenly spread samples take the rest of it.
-const OTHER_NOISE: f64 = 0.5;
-/// Pixels with most of it, which don't count: lights that are seen directly.
-const OUTLIERS: f64 = 0.02;
 /// By how much guided flights have to be better than none, which the pilot knows to a fifth.
 const MARGIN: f64 = 0.8;
 
@@ -51,19 +47,25 @@ pub(super) fn flights<'s>(
     std::thread::scope(|scope| {
         for (trial, share) in trials.iter_mut().zip(TRIED) {
             let aids = aids(share);
-            scope.spawn(move || *trial = Trial::new(scene, size, aids));
+            let work = move || *trial = Trial::new(scene, size, aids);
+            // Where the system refuses a thread, this one does the work below.
+            let _ = std::thread::Builder::new().name("pilot".to_owned()).spawn_scoped(scope, work);
         }
     });
+    for (trial, share) in trials.iter_mut().zip(TRIED).filter(|(trial, _)| trial.cost == 0.0) {
+        *trial = Trial::new(scene, size, aids(share));
+    }
     best(&trials)
 }
 
 /// The share with the least variance times cost, if it is clearly better than none.
 fn best(trials: &[Trial; TRIED.len()]) -> f32 {
-    let other = trials.iter().map(|trial| trial.other).sum::<f64>() / trials.len() as f64;
+    // Of a fire that hardly scatters it is most of the noise, and no share lowers it.
+    let emission = trials.iter().map(|trial| trial.emission).sum::<f64>() / trials.len() as f64;
     let (mut least, mut best) = (f64::INFINITY, FIRST);
     for (share, trial) in TRIED.into_iter().zip(trials) {
         let margin = if share > 0.0 { 1.0 } else { MARGIN };
-        let product = (trial.variance + OTHER_NOISE * other) * trial.cost * margin;
+        let product = (trial.scattered + emission) * trial.cost * margin;
         if product < least {
             (least, best) = (product, share);
         }
@@ -75,41 +77,33 @@ fn best(trials: &[Trial; TRIED.len()]) -> f32 {
 #[derive(Clone, Copy, Debug, Default)]
 struct Trial {
     /// Mean over the pixels of the variance of the light that is scattered or reflected to them.
-    variance: f64,
-    /// Of all other light.
-    other: f64,
+    scattered: f64,
+    /// The same of the emission that is seen directly.
+    emission: f64,
     /// Mean cost of a sample, in steps.
     cost: f64,
 }
 
 impl Trial {
     fn new(scene: &Scene, size: UVec2, aids: Aids<'_>) -> Self {
-        let (mut squares, mut spent, mut others) = (0.0, 0.0, Vec::new());
-        while spent < BUDGET && others.len() < MOST_SITES {
-            let site = Site::new(scene, size, others.len() as u32);
+        let (mut trial, mut sites) = (Self::default(), 0);
+        while trial.cost < BUDGET && sites < MOST_SITES {
+            let site = Site::new(scene, size, sites);
             let guides = if aids.flights > 0.0 && site.meets_medium() { GUIDE_COST } else { 0.0 };
             let [a, b] = [0, 1].map(|number| {
                 let mut effort = Effort::default();
                 let sample = site.path(aids, 0, number, &mut effort);
-                spent += effort.of(&sample) + guides;
-                [sample.direct + sample.indirect, sample.emission + sample.background]
+                trial.cost += 0.5 * (effort.of(&sample) + guides);
+                [sample.direct + sample.indirect, sample.emission]
                     .map(|light| f64::from(luminance(light)))
             });
-            squares += half_square(a[0] - b[0]);
-            others.push(half_square(a[1] - b[1]));
+            trial.scattered += half_square(a[0] - b[0]);
+            trial.emission += half_square(a[1] - b[1]);
+            sites += 1;
         }
-        let sites = others.len();
-        others.sort_by(f64::total_cmp);
-        others.truncate(sites - (OUTLIERS * sites as f64) as usize);
-        let mean = |sum: f64, count: usize| {
-            let mean = sum / count as f64;
-            if mean.is_finite() { mean } else { f64::INFINITY }
-        };
-        Self {
-            variance: mean(squares, sites),
-            other: mean(others.iter().sum(), others.len()),
-            cost: 0.5 * spent / sites as f64,
-        }
+        let sites = f64::from(sites);
+        let Self { scattered, emission, cost } = trial;
+        Self { scattered: scattered / sites, emission: emission / sites, cost: cost / sites }
     }
 }
 
@@ -178,7 +172,7 @@ mod tests {
     /// Each share is found best where it is.
     #[test]
     fn the_least_variance_times_cost_is_best() {
-        let trial = |variance, cost| Trial { variance, other: 1.0, cost };
+        let trial = |scattered, cost| Trial { scattered, emission: 1.0, cost };
         for (variances, costs, share) in [
             ([1.0, 1.0, 1.0, 1.0], [1.0, 2.0, 3.0, 4.0], 0.0),
             ([9.0, 1.0, 0.9, 0.8], [1.0, 2.0, 3.0, 4.0], 0.06),
