@@ -214,6 +214,31 @@ fn fire_that_lights_nothing_says_so() {
 }
 
 #[test]
+fn probes_that_do_not_pay_say_so() {
+    let cloud = r#"
+        [film]
+        size = [24, 16]
+        spp = 2
+        [strategy.advanced]
+        probe_count = 64
+        [camera]
+        position = [0, -4, 0]
+        target = [0, 0, 0]
+        [environment]
+        radiance = 1.0
+        [[volume]]
+        shape = "noise"
+        half_size = 1.0
+        frequency = 2.0
+        density = { scale = 6.0 }
+        albedo = 0.999
+        phase = { g = 0.8 }
+    "#;
+    let Some(mut window) = Window::open(cloud) else { return };
+    window.until_it_says("Not asked in this picture");
+}
+
+#[test]
 fn ray_marching_is_labeled_biased_wherever_it_is_on() {
     let Some(mut window) = Window::open(BALL) else { return };
     assert!(!window.has("biased") && !window.has("Biased"));

@@ -78,9 +78,11 @@ fn row_of(ui: &mut Ui, panel: &mut Panel<'_>, toggle: Toggle, command: Command, 
     ui.indent(key, |ui| {
         explain(ui, &key_summary(key));
         let unpaid = toggle == Toggle::Probes && panel.guided_flights == Some(0.0);
-        let unpaid = unpaid.then_some("in this picture probes would cost more than they bring.");
-        if let Some(reason) = idle.or(unpaid) {
-            let text = format!("No effect here: {reason}");
+        let why = match idle {
+            Some(reason) => Some(format!("No effect here: {reason}")),
+            None => unpaid.then(|| "Not asked in this picture: that would not pay.".to_owned()),
+        };
+        if let Some(text) = why {
             ui.add(egui::Label::new(RichText::new(text).small().color(color::WARNING)).wrap());
         }
     });
