@@ -245,16 +245,10 @@ impl<'g> Fan<'g> {
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-
     use glam::UVec2;
 
     use super::*;
-    use crate::{
-        error::NO_PROGRESS,
-        scene::{self, Overrides, VolumeCache},
-        transport::{Scene, probes::Probes, strategy::Advanced},
-    };
+    use crate::transport::{Scene, probes::Probes, strategy::Advanced};
 
     const SMOKE: &str = r#"
         [[volume]]
@@ -271,11 +265,6 @@ mod tests {
         intensity = 1.0
     "#;
     const LAMP: Vec3A = Vec3A::new(0.3, 0.1, 0.2);
-
-    fn smoke() -> Scene {
-        let settings = scene::parse(SMOKE, "test", Path::new("."), &Overrides::default()).unwrap();
-        scene::build(&settings, &VolumeCache::default(), NO_PROGRESS).unwrap()
-    }
 
     /// A ray through the smoke and what guides its flights: the line, the lamp or both.
     fn guided_ray<'s>(
@@ -368,7 +357,7 @@ mod tests {
     /// product) and that of the guide as the slope of how it draws.
     #[test]
     fn weights_divide_by_the_mixture_of_what_draws() {
-        let scene = smoke();
+        let scene = Scene::of_text(SMOKE);
         let probes = Probes::new(&scene).unwrap();
         let scatter_probability = ScatterProbability::Even;
         let advanced = Advanced { scatter_probability, ..Advanced::default() };

@@ -109,14 +109,10 @@ impl Trial {
 
 #[cfg(test)]
 mod tests {
-    use std::{path::Path, sync::Arc};
+    use std::sync::Arc;
 
     use super::*;
-    use crate::{
-        error::NO_PROGRESS,
-        scene::{self, Overrides, VolumeCache},
-        transport::Frame,
-    };
+    use crate::transport::Frame;
 
     const SIZE: UVec2 = UVec2::new(48, 32);
 
@@ -154,9 +150,7 @@ mod tests {
     "#;
 
     fn frame(text: &str) -> Frame {
-        let settings = scene::parse(text, "test", Path::new("."), &Overrides::default()).unwrap();
-        let scene = scene::build(&settings, &VolumeCache::default(), NO_PROGRESS).unwrap();
-        Frame::new(Arc::new(scene), SIZE, 0)
+        Frame::new(Arc::new(Scene::of_text(text)), SIZE, 0)
     }
 
     #[test]

@@ -19,3 +19,14 @@ pub struct Scene {
     /// How it is sampled.
     pub strategy: Strategy,
 }
+
+#[cfg(test)]
+impl Scene {
+    /// Builds a scene that a test describes.
+    pub(super) fn of_text(text: &str) -> Self {
+        use crate::scene;
+        let folder = std::path::Path::new(".");
+        let settings = scene::parse(text, "test", folder, &scene::Overrides::default()).unwrap();
+        scene::build(&settings, &scene::VolumeCache::default(), crate::error::NO_PROGRESS).unwrap()
+    }
+}

@@ -144,17 +144,10 @@ fn unguided(gatherer: &Gatherer) -> Aids<'_> {
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-
     use glam::Vec2;
 
     use super::*;
-    use crate::{
-        error::NO_PROGRESS,
-        math::PathRng,
-        scene::{self, Overrides, VolumeCache},
-        transport::path,
-    };
+    use crate::{math::PathRng, transport::path};
 
     const SIZE: UVec2 = UVec2::new(24, 24);
 
@@ -185,11 +178,6 @@ mod tests {
         density = { scale = 8.0 }
         albedo = 0.0
     "#;
-
-    fn build(text: &str) -> Scene {
-        let settings = scene::parse(text, "test", Path::new("."), &Overrides::default()).unwrap();
-        scene::build(&settings, &VolumeCache::default(), NO_PROGRESS).unwrap()
-    }
 
     /// Variance of independent samples times their cost, over the whole film.
     fn variance_times_cost(scene: &Scene, looks: f32) -> f64 {
@@ -223,7 +211,7 @@ mod tests {
             ("fire", format!("{CAMERA}{FIRE}")),
             ("fire behind smoke", format!("{CAMERA}{FIRE}{SMOKE}")),
         ] {
-            let scene = build(&text);
+            let scene = Scene::of_text(&text);
             let found = looks(&scene, SIZE);
             let all = [1.0 / 16.0, 0.25, 0.5, 1.0, 2.0, 4.0]
                 .map(|scale| variance_times_cost(&scene, scale * found));
@@ -237,11 +225,11 @@ mod tests {
     #[test]
     fn whoever_measures_finds_the_same() {
         let text = format!("{CAMERA}{FIRE}{SMOKE}");
-        let found = looks(&build(&text), SIZE);
+        let found = looks(&Scene::of_text(&text), SIZE);
         let threads: Vec<_> = (0..3)
             .map(|_| {
                 let text = text.clone();
-                std::thread::spawn(move || looks(&build(&text), SIZE))
+                std::thread::spawn(move || looks(&Scene::of_text(&text), SIZE))
             })
             .collect();
         for thread in threads {
@@ -253,22 +241,22 @@ mod tests {
     /// A step or a segment takes some ten nanoseconds.
     #[test]
     fn measuring_costs_milliseconds_at_most() {
-        let measured = measure(&build(&format!("{CAMERA}{FIRE}{SMOKE}")), SIZE);
+        let measured = measure(&Scene::of_text(&format!("{CAMERA}{FIRE}{SMOKE}")), SIZE);
         assert!(measured.sites > 50 && measured.spent < 2 * MOST_STEPS, "{measured:?}");
 
-        let dark = build(&format!("{CAMERA}{SMOKE}"));
+        let dark = Scene::of_text(&format!("{CAMERA}{SMOKE}"));
         assert_eq!(measure(&dark, SIZE).searched, 0);
         assert_eq!(looks(&dark, SIZE), UNMEASURED);
 
         let away = CAMERA.replace("[0, 0, 0]", "[0, -8, 0]");
-        let unseen = build(&format!("{away}{FIRE}{SMOKE}"));
+        let unseen = Scene::of_text(&format!("{away}{FIRE}{SMOKE}"));
         let measured = measure(&unseen, SIZE);
         assert!(measured.sites == 0 && measured.spent == 0, "{measured:?}");
         assert_eq!(looks(&unseen, SIZE), UNMEASURED);
 
         // Smoke fills the view and hides nothing that glows.
         let beside = FIRE.replace("[[volume]]", "[[volume]]\ntranslate = [0, -9, 0]");
-        let hidden = build(&format!("{CAMERA}{beside}{SMOKE}"));
+        let hidden = Scene::of_text(&format!("{CAMERA}{beside}{SMOKE}"));
         let measured = measure(&hidden, SIZE);
         assert!(measured.sites == 0 && measured.spent < 2 * MOST_STEPS, "{measured:?}");
     }
@@ -282,7 +270,7 @@ mod tests {
                 let fire = FIRE
                     .replace("[3.0, 1.0, 0.2]", le)
                     .replace("scale = 0.5", &format!("scale = {density}"));
-                let scene = build(&format!("{CAMERA}{fire}"));
+                let scene = Scene::of_text(&format!("{CAMERA}{fire}"));
                 let looks = looks(&scene, UVec2::splat(4));
                 assert!((1.0..=4096.0).contains(&looks), "le {le}, density {density}: {looks}");
             }

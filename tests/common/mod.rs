@@ -77,7 +77,8 @@ pub fn asking() -> Advanced {
     Advanced { share_learning: false, ..Advanced::default() }
 }
 
-/// Every combination of the toggles, with few guided flights.
+/// Every combination of the toggles, half of them with few guided flights and half with as many as
+/// light asks for.
 pub fn all_strategies() -> Vec<Strategy> {
     (0..32).map(toggles).collect()
 }
@@ -88,13 +89,15 @@ pub fn half_of_strategies() -> Vec<Strategy> {
 }
 
 fn toggles(bits: u32) -> Strategy {
+    let scatter_probability =
+        if bits & 1 != 0 { ScatterProbability::Light } else { ScatterProbability::Even };
     Strategy {
         emission_decoupling: bits & 1 != 0,
         emission_ratio_tracking: bits & 2 != 0,
         majorant_boost: bits & 4 != 0,
         nee: bits & 8 != 0,
         probe_mis: bits & 16 != 0,
-        advanced: Advanced { scatter_probability: ScatterProbability::Even, ..asking() },
+        advanced: Advanced { scatter_probability, ..asking() },
         ..Strategy::default()
     }
 }
