@@ -36,6 +36,9 @@ albedo = 0.4
 emission = { mode = "source", le = [2.0, 0.7, 0.2] }
 "#;
 
+/// How long anything is waited for, on a busy machine without a graphics card.
+const PATIENCE: Duration = Duration::from_secs(180);
+
 struct Window {
     harness: Harness<'static, Option<App>>,
     folder: tempfile::TempDir,
@@ -82,7 +85,7 @@ impl Window {
             if condition(self.app()) {
                 break;
             }
-            assert!(start.elapsed() < Duration::from_secs(60), "still waiting until {what}");
+            assert!(start.elapsed() < PATIENCE, "still waiting until {what}");
             std::thread::sleep(Duration::from_millis(5));
         }
         self.settle();
@@ -140,7 +143,7 @@ impl Window {
     fn until_it_says(&mut self, text: &str) {
         let start = Instant::now();
         while !self.has(text) {
-            assert!(start.elapsed() < Duration::from_secs(60), "still waiting for {text:?}");
+            assert!(start.elapsed() < PATIENCE, "still waiting for {text:?}");
             std::thread::sleep(Duration::from_millis(5));
             self.settle();
         }
@@ -215,7 +218,7 @@ fn fire_that_lights_nothing_says_so() {
 
 #[test]
 fn probes_that_do_not_pay_say_so() {
-    let cloud = r#"
+    let fog = r#"
         [film]
         size = [24, 16]
         spp = 2
@@ -227,14 +230,12 @@ fn probes_that_do_not_pay_say_so() {
         [environment]
         radiance = 1.0
         [[volume]]
-        shape = "noise"
+        shape = "box"
         half_size = 1.0
-        frequency = 2.0
-        density = { scale = 6.0 }
-        albedo = 0.999
-        phase = { g = 0.8 }
+        density = { scale = 2.0 }
+        albedo = 0.5
     "#;
-    let Some(mut window) = Window::open(cloud) else { return };
+    let Some(mut window) = Window::open(fog) else { return };
     window.until_it_says("Not asked in this picture");
 }
 
