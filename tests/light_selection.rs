@@ -89,7 +89,7 @@ fn walls() -> String {
 }
 
 fn by(light_selection: LightSelection) -> Strategy {
-    let advanced = Advanced { light_selection, probe_count: 1000, ..Advanced::default() };
+    let advanced = Advanced { light_selection, probe_count: 1000, ..common::asking() };
     Strategy { advanced, ..Strategy::default() }
 }
 

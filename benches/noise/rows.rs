@@ -129,6 +129,7 @@ fn distances() -> Vec<Row> {
         but("mis, all rays alike", |a| a.scatter_probability = ScatterProbability::Even),
         but("mis, no equal angles", |a| a.equiangular = false),
         but("mis, directions unguided", |a| a.guide_directions = false),
+        but("mis, metals unguided", |a| a.guide_caustics = false),
         but("mis, bounces guided", |a| a.guide_all_vertices = true),
         but("mis, bounces guided, unlearned", |a| {
             (a.guide_all_vertices, a.probe_learning) = (true, false);

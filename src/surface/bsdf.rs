@@ -52,6 +52,11 @@ impl Bsdf {
         self.frame.normal
     }
 
+    /// Whether it is a metal.
+    pub fn is_metal(&self) -> bool {
+        matches!(self.material, Material::Conductor { .. })
+    }
+
     /// BSDF times |cos θ| of the unit `incoming`, and the density over solid angle that
     /// [`Bsdf::sample`] draws it with.
     pub fn eval(&self, incoming: Vec3A) -> (Rgb, f32) {

@@ -52,10 +52,15 @@ impl Quad {
         inside.then_some(Hit { t, point, normal: self.normal })
     }
 
+    /// A point uniform over the area, and its normal, from `u` in [0, 1)².
+    pub fn point(&self, u: Vec2) -> (Vec3A, Vec3A) {
+        let [a, b] = [2.0 * u.x - 1.0, 2.0 * u.y - 1.0];
+        (self.center + a * self.edge_u + b * self.edge_v, self.normal)
+    }
+
     /// Draws a point uniform over the area, as a direction from `from`.
     pub fn sample(&self, from: Vec3A, u: Vec2) -> Option<SurfacePoint> {
-        let [a, b] = [2.0 * u.x - 1.0, 2.0 * u.y - 1.0];
-        let to_point = self.center + a * self.edge_u + b * self.edge_v - from;
+        let to_point = self.point(u).0 - from;
         let distance = to_point.length();
         let pdf_solid_angle = pdf_from_area(1.0 / self.area(), to_point, self.normal);
         let direction = to_point / distance;

@@ -3,7 +3,10 @@
 use glam::{Vec2, Vec3A};
 
 use super::{Quad, Sphere};
-use crate::math::{Aabb, Frame, Ray};
+use crate::{
+    math::{Aabb, Frame, Ray},
+    sampling::warp::uniform_sphere,
+};
 
 /// Rounding of a hit point relative to the numbers it was computed from, with room to spare.
 const RELATIVE_ERROR: f32 = 64.0 * f32::EPSILON;
@@ -120,6 +123,19 @@ impl Shape {
         }
     }
 
+    /// A point uniform over its area, and the unit normal there. `None` where it is infinite.
+    pub fn point(&self, pick: f32, u: Vec2) -> Option<(Vec3A, Vec3A)> {
+        match self {
+            Self::Plane { .. } => None,
+            Self::Quad(quad) => Some(quad.point(u)),
+            Self::Sphere(sphere) => {
+                let normal = uniform_sphere(u);
+                Some((sphere.center + sphere.radius * normal, normal))
+            }
+            Self::Box(faces) => Some(face_by_area(faces, pick).0.point(u)),
+        }
+    }
+
     /// Draws a direction from `from` towards the shape. `None` where it cannot be sampled.
     pub fn sample(&self, from: Vec3A, pick: f32, u: Vec2) -> Option<SurfacePoint> {
         match self {
@@ -127,13 +143,7 @@ impl Shape {
             Self::Quad(quad) => quad.sample(from, u),
             Self::Sphere(sphere) => sphere.sample(from, u),
             Self::Box(faces) => {
-                let total: f32 = faces.iter().map(Quad::area).sum();
-                let mut left = pick * total;
-                let face = faces.iter().find(|face| {
-                    left -= face.area();
-                    left < 0.0
-                });
-                let face = face.unwrap_or(&faces[5]);
+                let (face, total) = face_by_area(faces, pick);
                 let mut point = face.sample(from, u)?;
                 if faces_away(faces, face, from, &point) {
                     return None;
@@ -156,6 +166,17 @@ impl Shape {
             }
         }
     }
+}
+
+/// The face of a box that `pick`, in [0, 1), chooses by area, and the area of all.
+fn face_by_area(faces: &[Quad; 6], pick: f32) -> (&Quad, f32) {
+    let total: f32 = faces.iter().map(Quad::area).sum();
+    let mut left = pick * total;
+    let face = faces.iter().find(|face| {
+        left -= face.area();
+        left < 0.0
+    });
+    (face.unwrap_or(&faces[5]), total)
 }
 
 /// Whether `point` lies on the far side of a box seen from outside, hidden behind the near side.

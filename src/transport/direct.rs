@@ -229,20 +229,37 @@ pub fn point_of_light(
     Aim::new(scene, from, choice, pick, rng)?.point()
 }
 
+/// What a glance finds.
+#[derive(Clone, Copy, Debug)]
+pub struct Glance {
+    /// The light's index in the scene.
+    pub light: u32,
+    /// Unit direction towards it.
+    pub direction: Vec3A,
+    /// Distance to it; infinite for the sun.
+    pub distance: f32,
+    /// Its radiance over the density of the look.
+    pub radiance: Rgb,
+}
+
 /// An estimate of the light that arrives at a receiver, by one look at one of the lights, whatever
-/// probes may say: its direction, and its radiance over the density of the look. Lights are all
-/// that is found: not the environment, not what has scattered.
+/// probes may say. Lights are all that is found: not the environment, not what has scattered.
 pub fn glance(
     scene: &Scene,
     gatherer: &Gatherer,
     from: &Receiver,
     rng: &mut PathRng,
-) -> Option<(Vec3A, Rgb)> {
+) -> Option<Glance> {
     let choice = choice(&scene.strategy);
     let pick = rng.at64(Slot::LightPick);
     let aim = Aim::new(scene, from, &choice, pick, rng)?;
     let pdf = aim.pdf_solid_angle(scene);
-    (pdf > 0.0).then(|| (aim.direction, aim.radiance_over_pdf(scene, gatherer, pdf, rng).0))
+    (pdf > 0.0).then(|| Glance {
+        light: aim.light.0,
+        direction: aim.direction,
+        distance: aim.point().map_or(f32::INFINITY, |point| point.distance(from.position)),
+        radiance: aim.radiance_over_pdf(scene, gatherer, pdf, rng).0,
+    })
 }
 
 /// How much of the light that `pick`, in [0, 1), chooses by the hierarchy gets to a receiver: the

@@ -43,7 +43,11 @@ impl Probes {
     /// The same, but given up, with `None`, once `stop` says so.
     pub fn unless(scene: &Scene, stop: &(dyn Fn() -> bool + Sync)) -> Option<Self> {
         let mut probes = Self::placed(scene, stop)?;
-        if scene.strategy.advanced.probe_learning && scene.strategy.guides() {
+        let (guides, advanced) = (scene.strategy.guides(), &scene.strategy.advanced);
+        if advanced.guide_caustics && guides {
+            probes.find_caustics(scene, stop)?;
+        }
+        if advanced.probe_learning && guides {
             let learned = learned(&probes, scene, stop)?;
             probes.learn(&learned);
         }

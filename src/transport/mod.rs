@@ -1,7 +1,9 @@
 //! How light moves through volumes: the strategies and the paths they sample. Read `path` first.
 
 pub mod camera;
+mod caustics;
 pub mod direct;
+mod directions;
 mod distance;
 mod effort;
 pub mod emission;

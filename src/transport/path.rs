@@ -13,6 +13,7 @@ use glam::Vec3A;
 use super::{
     PathSample,
     direct::{self, Departure},
+    directions,
     distance::{self, Fan, Guide},
     emission::{Errand, Gatherer, Glow},
     march,
@@ -27,7 +28,7 @@ use super::{
 use crate::{
     light::{Choice, Receiver},
     math::{PathRng, Ray, Rgb, mean},
-    sampling::{equiangular::Equiangular, halo::Halo},
+    sampling::equiangular::Equiangular,
     surface::{self, Intersection},
     volume::world::MediumRay,
 };
@@ -81,6 +82,7 @@ pub fn trace(
         aids,
         ray,
         throughput: Rgb::ONE,
+        lift: 1.0,
         scatters: 0,
         departure: None,
         light: None,
@@ -99,6 +101,9 @@ struct Path<'s> {
     aids: Aids<'s>,
     ray: Ray,
     throughput: Rgb,
+    /// How many times as often as by chance alone the last turn to everywhere was drawn so: a path
+    /// that was sent to light is not dim for being one of many.
+    lift: f32,
     /// Scattering events and reflections so far.
     scatters: u32,
     /// None for the camera ray.
@@ -228,6 +233,7 @@ impl Path<'_> {
         }
         (self.ray, self.throughput, self.light) = (ray, throughput, light);
         (self.branch, self.scatters, self.departure) = (Branch::Main, 0, None);
+        self.lift = 1.0;
         rng.enter_vertex(0);
     }
 
@@ -398,6 +404,9 @@ impl Path<'_> {
         self.light = look.point;
         let Some(turn) = self.choose_direction(vertex, rng) else { return false };
         self.throughput *= turn.weight;
+        if vertex.is_broad() {
+            self.lift = turn.lift;
+        }
         self.ray = vertex.ray(turn.direction);
         let (from, pdf_solid_angle) = (vertex.receiver(), turn.pdf_solid_angle);
         self.departure = Some(Departure { from, choice, pdf_solid_angle });
@@ -418,22 +427,17 @@ impl Path<'_> {
         }
     }
 
-    /// Where the path goes on from a vertex: sometimes towards the glow around a light that the
-    /// medium scatters much of.
+    /// Where the path goes on from a vertex: sometimes where the probes know of light.
     fn choose_direction(&self, vertex: &Vertex, rng: &mut PathRng) -> Option<Turn> {
         let strategy = &self.scene.strategy;
-        let guides = self.aids.guides(strategy);
-        let guided = strategy.advanced.guide_directions && self.scatters < GUIDED_RAYS;
-        let probes = guides.filter(|_| guided);
-        let (Some(probes), Some(point), false) = (probes, self.light, vertex.is_surface()) else {
-            return vertex.sample(rng);
-        };
-        let share = probes.share_of_halo();
-        match (point - vertex.receiver().position).try_normalize() {
-            Some(axis) if share > 0.0 => {
-                vertex.sample_towards(&Halo::new(axis, probes.mean_cosine()), share, rng)
+        match self.aids.probes.filter(|_| self.scatters < GUIDED_RAYS && strategy.guides()) {
+            Some(probes) => {
+                // Without guided flights there are no splits that would even out what the glow brings.
+                let light = self.light.filter(|_| self.aids.flights > 0.0);
+                let towards = directions::towards(&strategy.advanced, probes, vertex, light);
+                vertex.sample_towards(&towards, rng)
             }
-            _ => vertex.sample(rng),
+            None => vertex.sample(rng),
         }
     }
 
@@ -448,7 +452,7 @@ impl Path<'_> {
         if self.is_weighed(vertex) {
             return self.throughput != Rgb::ZERO;
         }
-        let survival = (self.throughput.max_element() / ROULETTE_BELOW).min(1.0);
+        let survival = (self.throughput.max_element() * self.lift / ROULETTE_BELOW).min(1.0);
         if self.scatters < ROULETTE_AFTER || survival >= 1.0 {
             return survival > 0.0;
         }

@@ -10,6 +10,7 @@
 //! changes what guides it.
 
 mod brightness;
+mod focus;
 mod halo;
 mod line;
 mod octree;
@@ -31,6 +32,8 @@ use crate::{
     volume::{medium::Segment, world::MediumRay},
 };
 pub use brightness::Brightness;
+use focus::Foci;
+pub(super) use focus::{Beam, Focus};
 pub use line::Line;
 use line::{LineBuilder, Stretch};
 use octree::{Octree, child_of};
@@ -58,6 +61,8 @@ pub struct Probes {
     probes: Vec<Probe>,
     /// Of the lights, by node, at leaves from where any is seen; empty if they are not asked for.
     scores: Vec<Option<Scores>>,
+    /// Bundles of light that metals throw.
+    foci: Foci,
     /// Radiance scattered outside of the octree per unit of μ_s.
     outside: f32,
     /// Mean cosine of what scatters most.
@@ -86,6 +91,7 @@ impl Probes {
             octree,
             probes: vec![first],
             scores: Vec::new(),
+            foci: Foci::default(),
             outside: 0.0,
             mean_cosine: 0.0,
             scattered,
@@ -266,40 +272,82 @@ impl Probes {
     }
 
     /// The density along `ray` whose medium is given; `None` where nothing scatters.
-    pub fn along(&self, mut medium: MediumRay, ray: &Ray) -> Option<Line> {
+    pub fn along(&self, medium: MediumRay, ray: &Ray) -> Option<Line> {
         let mut line = LineBuilder::new();
+        let mut last = None;
+        let mut radiance = 0.0;
+        self.visit(medium, ray, |leaf, stretch| {
+            if last != Some(leaf) {
+                radiance = self.radiance(leaf, ray.direction);
+                last = Some(leaf);
+            }
+            line.add(&Stretch { scattered: stretch.scattered * radiance, ..*stretch });
+            line.transmittance()
+        });
+        line.finish()
+    }
+
+    /// Calls `found` with the stretches along `ray` whose medium is given, from near to far, each
+    /// with the leaf it lies in and with μ_s in place of what is scattered. It says what of the
+    /// light is left behind them: where that is dark, leaves are told apart no more.
+    pub(super) fn visit(
+        &self,
+        mut medium: MediumRay,
+        ray: &Ray,
+        mut found: impl FnMut(Option<u32>, &Stretch) -> f32,
+    ) {
         let mut place = self.octree.locate(ray, 0.0);
-        let mut radiance = self.radiance(place.leaf, ray);
+        let mut left = 1.0;
         while let Some(segment) = medium.next_segment() {
             let mut t = segment.t0;
             if segment.majorant <= 0.0 {
                 continue;
             }
             while t < segment.t1 {
-                let dark = line.transmittance() < DARK;
+                let dark = left < DARK;
                 if t >= place.t_end && !dark {
                     place = self.octree.locate(ray, t);
-                    radiance = self.radiance(place.leaf, ray);
                 }
                 let t1 = if dark { segment.t1 } else { segment.t1.min(place.t_end) };
-                line.add(&self.stretch(&medium, &segment, t, t1, place.leaf, radiance));
+                left = found(place.leaf, &self.stretch(&medium, &segment, t, t1, place.leaf));
                 t = t1;
             }
         }
-        line.finish()
     }
 
     /// Radiance thought to be scattered at a point back along a ray of the unit `direction`, per unit
     /// of μ_s.
     pub fn radiance_at(&self, point: Vec3A, direction: Vec3A) -> f32 {
-        match self.octree.leaf_at(point) {
-            Some(leaf) => self.probes[leaf as usize].in_scattered(direction),
-            None => self.outside,
-        }
+        self.radiance(self.octree.leaf_at(point), direction)
     }
 
-    fn radiance(&self, leaf: Option<u32>, ray: &Ray) -> f32 {
-        leaf.map_or(self.outside, |leaf| self.probes[leaf as usize].in_scattered(ray.direction))
+    /// The bundles of light around a point, and ∫ L dω of all other light that comes indirectly.
+    pub(super) fn bundles(&self, point: Vec3A) -> (&[Focus], f32) {
+        let Some(leaf) = self.octree.leaf_at(point) else { return (&[], 0.0) };
+        let foci = self.foci.of(leaf);
+        let bundled: f32 = foci.iter().map(|focus| focus.fluence).sum();
+        (foci, (self.probes[leaf as usize].indirect_fluence() - bundled).max(0.0))
+    }
+
+    /// Takes bundles of light.
+    pub(super) fn take_beams(&mut self, beams: Vec<Beam>) {
+        self.foci = Foci::new(beams, self.probes.len());
+    }
+
+    /// Length of the diagonal of the cube that the probes fill.
+    pub(super) fn size(&self) -> f32 {
+        self.octree.bounds().diagonal()
+    }
+
+    /// The middle of that cube.
+    pub(super) fn center(&self) -> Vec3A {
+        self.octree.bounds().center()
+    }
+
+    fn radiance(&self, leaf: Option<u32>, direction: Vec3A) -> f32 {
+        leaf.map_or(self.outside, |leaf| {
+            in_scattered(&self.probes[leaf as usize], self.foci.of(leaf), direction)
+        })
     }
 
     /// The part of a segment between two parameters, inside of a leaf.
@@ -310,7 +358,6 @@ impl Probes {
         t0: f32,
         t1: f32,
         leaf: Option<u32>,
-        radiance: f32,
     ) -> Stretch {
         let majorant = segment.majorant;
         let (mu_t, mu_s) = if segment.uniform {
@@ -326,8 +373,14 @@ impl Probes {
             });
             (majorant * density, majorant * density * albedo)
         };
-        Stretch { t0, t1, mu_t, majorant, scattered: mu_s * radiance }
+        Stretch { t0, t1, mu_t, majorant, scattered: mu_s }
     }
+}
+
+/// ∫ L ρ dω in a leaf back along a ray with the unit `direction`.
+fn in_scattered(probe: &Probe, foci: &[Focus], direction: Vec3A) -> f32 {
+    let even = probe.in_scattered(direction);
+    foci.iter().fold(even, |sum, focus| sum + focus.in_scattered(probe.g(), direction))
 }
 
 /// What probes are made from.

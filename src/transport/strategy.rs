@@ -107,6 +107,10 @@ pub struct Advanced {
     pub equiangular: bool,
     /// With the probes on: also send paths that have scattered towards the glow around the lights.
     pub guide_directions: bool,
+    /// With the probes on: also send paths to metals that throw light into the smoke, by rays that
+    /// set out from the metals before the picture begins. Finds the bright bundles of light off
+    /// mirrors, and costs nothing where there are none.
+    pub guide_caustics: bool,
     /// Spread the samples of a pixel evenly instead of at random. Less noise at no cost; off it
     /// shows what independent samples would bring.
     pub low_discrepancy: bool,
@@ -312,6 +316,7 @@ impl Default for Advanced {
             guide_all_vertices: false,
             equiangular: true,
             guide_directions: true,
+            guide_caustics: true,
             low_discrepancy: true,
         }
     }

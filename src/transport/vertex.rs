@@ -8,7 +8,7 @@ use glam::{Vec2, Vec3A};
 use crate::{
     light::Receiver,
     math::{PathRng, Ray, Rgb, Slot, mean},
-    sampling::halo::Halo,
+    sampling::towards::Towards,
     surface::{Bsdf, Hit, Intersection},
     volume::phase::PhaseMix,
 };
@@ -37,8 +37,10 @@ pub struct Turn {
     pub direction: Vec3A,
     /// Value over density.
     pub weight: Rgb,
-    /// Density over solid angle.
+    /// Density over solid angle of chance alone.
     pub pdf_solid_angle: f32,
+    /// How many times as often as by chance alone it is drawn.
+    pub lift: f32,
 }
 
 impl Vertex {
@@ -61,6 +63,14 @@ impl Vertex {
     /// Whether it lies on a surface.
     pub fn is_surface(&self) -> bool {
         matches!(self.kind, Kind::Surface { .. })
+    }
+
+    /// Whether it sends light everywhere, as all but metals do.
+    pub fn is_broad(&self) -> bool {
+        match &self.kind {
+            Kind::Volume { .. } => true,
+            Kind::Surface { bsdf, .. } => !bsdf.is_metal(),
+        }
     }
 
     /// The share of light from the unit `direction` that goes on along the path (for a surface
@@ -92,26 +102,33 @@ impl Vertex {
             direction,
             weight: value / pdf_solid_angle,
             pdf_solid_angle,
+            lift: 1.0,
         })
     }
 
-    /// [`Vertex::sample`], or with probability `share` a direction of `halo`; the weight is over the
-    /// mixture of both. The density is still that of [`Vertex::sample`]: MIS with looks at lights
-    /// is by that alone, and as those do the same the weights of both sum to one.
-    pub fn sample_towards(&self, halo: &Halo, share: f32, rng: &mut PathRng) -> Option<Turn> {
+    /// [`Vertex::sample`], or one of the directions of `towards` with their shares; the weight is
+    /// over the mixture of all. The density is still that of [`Vertex::sample`]: MIS with looks at
+    /// lights is by that alone, and as those do the same the weights of both sum to one.
+    pub fn sample_towards(&self, towards: &Towards, rng: &mut PathRng) -> Option<Turn> {
         let pick = rng.at(Slot::TurnPick);
         let u = Vec2::new(rng.at(Slot::TurnX), rng.at(Slot::TurnY));
+        let share = towards.share();
         let direction = match &self.kind {
-            _ if pick < share => halo.sample(u),
+            _ if pick < share => towards.sample(pick, u)?,
             Kind::Volume { phase, forward } => {
                 phase.sample(*forward, (pick - share) / (1.0 - share), u)
             }
             Kind::Surface { bsdf, .. } => bsdf.sample(u)?,
         };
         let (value, pdf_solid_angle) = self.eval(direction);
-        let mixture = (1.0 - share) * pdf_solid_angle + share * halo.pdf(direction);
+        let mixture = (1.0 - share) * pdf_solid_angle + towards.pdf_times_share(direction);
         let met = mixture > 0.0 && value.max_element() > 0.0;
-        met.then(|| Turn { direction, weight: value / mixture, pdf_solid_angle })
+        met.then(|| Turn {
+            direction,
+            weight: value / mixture,
+            pdf_solid_angle,
+            lift: mixture / pdf_solid_angle,
+        })
     }
 
     /// The ray that leaves along `direction` without meeting the surface it starts on.

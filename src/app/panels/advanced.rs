@@ -125,6 +125,7 @@ fn guided_scattering(
                 "Guide directions",
                 "strategy.advanced.guide_directions",
             ),
+            (&mut advanced.guide_caustics, "Guide to metals", "strategy.advanced.guide_caustics"),
             (
                 &mut advanced.guide_all_vertices,
                 "Guide bounces",

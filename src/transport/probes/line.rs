@@ -35,7 +35,7 @@ struct Piece {
 
 /// What a stretch of a ray is thought to hold.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Stretch {
+pub(in crate::transport) struct Stretch {
     /// Where it begins.
     pub(super) t0: f32,
     /// Where it ends; may be infinite.
@@ -46,6 +46,23 @@ pub(super) struct Stretch {
     pub(super) majorant: f32,
     /// Radiance scattered back along the ray, per length.
     pub(super) scattered: f32,
+}
+
+impl Stretch {
+    /// exp(−τ) of it.
+    pub(in crate::transport) fn transmittance(&self) -> f32 {
+        (-self.mu_t * (self.t1 - self.t0)).exp()
+    }
+
+    /// ∫ T dt over it, T being 1 where it begins.
+    pub(in crate::transport) fn absorbed(&self) -> f32 {
+        mass(self.mu_t, self.t1 - self.t0)
+    }
+
+    /// The parameter in its middle.
+    pub(in crate::transport) fn middle(&self) -> f32 {
+        0.5 * (self.t0 + self.t1)
+    }
 }
 
 /// Collects stretches from near to far.

@@ -152,6 +152,11 @@ impl Probe {
         })
     }
 
+    /// ∫ L dω of what arrives indirectly.
+    pub(super) fn indirect_fluence(&self) -> f32 {
+        self.indirect.fluence
+    }
+
     /// Mean cosine of the scattering.
     pub(super) fn g(&self) -> f32 {
         self.g
@@ -208,7 +213,7 @@ impl Matter {
 fn look(scene: &Scene, gatherer: &Gatherer, point: Vec3A, rng: &mut PathRng) -> Lobe {
     let from = Receiver { position: point, normal: None };
     match direct::glance(scene, gatherer, &from, rng) {
-        Some((direction, radiance)) => Lobe { direction, fluence: finite(luminance(radiance)) },
+        Some(look) => Lobe { direction: look.direction, fluence: finite(luminance(look.radiance)) },
         None => Lobe { direction: Vec3A::X, fluence: 0.0 },
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::Vec3A;
 
-use super::{Probe, Probes, child_of};
+use super::{Focus, Probe, Probes, child_of, in_scattered};
 use crate::math::Aabb;
 
 /// A probe in its place.
@@ -11,6 +11,7 @@ pub struct ProbeView<'p> {
     /// The cube it stands for, in the world.
     pub bounds: Aabb,
     probe: &'p Probe,
+    foci: &'p [Focus],
 }
 
 impl ProbeView<'_> {
@@ -19,7 +20,7 @@ impl ProbeView<'_> {
     pub fn score(&self, direction: Vec3A) -> f32 {
         // The power is μ_s times the radiance.
         let mu_s = self.probe.power() / self.probe.radiance();
-        let score = mu_s * self.probe.in_scattered(direction);
+        let score = mu_s * in_scattered(self.probe, self.foci, direction);
         if score.is_finite() { score } else { 0.0 }
     }
 }
@@ -33,7 +34,10 @@ impl Probes {
                 Some(first) => {
                     left.extend((0..8).map(|i| (first + i, child_of(&bounds, i))));
                 }
-                None => found(ProbeView { bounds, probe: &self.probes[node as usize] }),
+                None => {
+                    let (probe, foci) = (&self.probes[node as usize], self.foci.of(node));
+                    found(ProbeView { bounds, probe, foci });
+                }
             }
         }
     }

@@ -1,0 +1,181 @@
+//! Light that metals throw into the medium in bundles, as it arrives in the leaves: each bundle
+//! points back to an image of its light, so that one direction does not have to stand for a leaf.
+
+use glam::{Mat3A, Vec3A};
+use smallvec::SmallVec;
+
+use crate::volume::phase::henyey_greenstein;
+
+/// Bundles that are kept in a leaf.
+const MOST: usize = 4;
+/// Rays that a bundle needs.
+const LEAST_RAYS: usize = 3;
+/// How much the image of a flat mirror is trusted to be where the rays meet, beside the rays.
+const TRUST: f32 = 1e-4;
+/// 1 − cos of the spread that is taken for granted, and the rays that stand for it.
+const PRIOR: (f32, f32) = (0.01, 1.0);
+/// The narrowest bundle: 1 − cos of its spread.
+const NARROWEST: f32 = 1e-6;
+
+/// Part of a ray of light that a metal has thrown, in a leaf.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::transport) struct Beam {
+    /// The leaf.
+    pub(in crate::transport) leaf: u32,
+    /// The metal and the light, by their indices in the scene.
+    pub(in crate::transport) origin: (u32, u32),
+    /// ∫ L dω that it brings to the leaf.
+    pub(in crate::transport) fluence: f32,
+    /// A point of it.
+    pub(in crate::transport) point: Vec3A,
+    /// Unit, towards where it comes from.
+    pub(in crate::transport) direction: Vec3A,
+    /// Where the light would be if the mirrors were windows.
+    pub(in crate::transport) image: Vec3A,
+}
+
+/// A bundle of light in a leaf.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::transport) struct Focus {
+    /// Where its rays come from.
+    pub(in crate::transport) point: Vec3A,
+    /// Unit, on average towards there.
+    direction: Vec3A,
+    /// κ of their directions about that to the point.
+    pub(in crate::transport) concentration: f32,
+    /// ∫ L dω.
+    pub(in crate::transport) fluence: f32,
+}
+
+/// The bundles of all leaves; empty by default.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Foci {
+    all: Vec<Focus>,
+    /// Of each node the first in `all` and how many; empty where there is none at all.
+    places: Vec<(u32, u32)>,
+}
+
+impl Foci {
+    /// Gathers `beams`, in any order, for an octree of so many `nodes`.
+    pub(super) fn new(mut beams: Vec<Beam>, nodes: usize) -> Self {
+        let mut foci = Self::default();
+        beams.sort_by_key(|beam| (beam.leaf, beam.origin));
+        for beams in beams.chunk_by(|a, b| a.leaf == b.leaf) {
+            let bundles = beams.chunk_by(|a, b| a.origin == b.origin);
+            let mut found: SmallVec<[Focus; MOST]> = bundles.filter_map(Focus::new).collect();
+            found.sort_by(|a, b| b.fluence.total_cmp(&a.fluence));
+            found.truncate(MOST);
+            if found.is_empty() {
+                continue;
+            }
+            foci.places.resize(nodes, (0, 0));
+            let place = (foci.all.len() as u32, found.len() as u32);
+            foci.places[beams[0].leaf as usize] = place;
+            foci.all.extend(found);
+        }
+        foci
+    }
+
+    /// Those of a leaf.
+    #[inline]
+    pub(super) fn of(&self, leaf: u32) -> &[Focus] {
+        let Some(&(first, count)) = self.places.get(leaf as usize) else { return &[] };
+        &self.all[first as usize..(first + count) as usize]
+    }
+}
+
+impl Focus {
+    /// Of the beams of one light off one metal in one leaf; `None` where they are too few.
+    fn new(beams: &[Beam]) -> Option<Self> {
+        let fluence: f32 = beams.iter().map(|beam| beam.fluence).sum();
+        if beams.len() < LEAST_RAYS || !(fluence > 0.0 && fluence.is_finite()) {
+            return None;
+        }
+        let mean = |of: &dyn Fn(&Beam) -> Vec3A| {
+            beams.iter().map(|beam| beam.fluence / fluence * of(beam)).sum::<Vec3A>()
+        };
+        let direction = mean(&|beam| beam.direction).try_normalize()?;
+        let point = meeting(beams, fluence, mean(&|beam| beam.point))?;
+        let off = |beam: &Beam| {
+            let axis = (point - beam.point).normalize_or_zero();
+            beam.fluence / fluence * 0.5 * (beam.direction - axis).length_squared()
+        };
+        let spread: f32 = beams.iter().map(off).sum();
+        let rays = beams.len() as f32;
+        let spread = (rays * spread + PRIOR.1 * PRIOR.0) / (rays + PRIOR.1);
+        let concentration = 1.0 / spread.max(NARROWEST);
+        Some(Self { point, direction, concentration, fluence })
+    }
+
+    /// ∫ L ρ dω back along a ray with the unit `direction`, for a phase function of mean cosine `g`.
+    #[inline]
+    pub(super) fn in_scattered(&self, g: f32, direction: Vec3A) -> f32 {
+        self.fluence * henyey_greenstein(g, direction, self.direction)
+    }
+}
+
+/// The point that the lines of the beams come nearest to, in the mean of squares, and with little
+/// weight their images, which say how far away it is where the lines are parallel.
+fn meeting(beams: &[Beam], fluence: f32, center: Vec3A) -> Option<Vec3A> {
+    let (mut matrix, mut right) = (Mat3A::ZERO, Vec3A::ZERO);
+    for beam in beams {
+        let weight = beam.fluence / fluence;
+        let d = beam.direction;
+        let across = Mat3A::IDENTITY - Mat3A::from_cols(d.x * d, d.y * d, d.z * d);
+        matrix += weight * (across + TRUST * Mat3A::IDENTITY);
+        right += weight * (across * (beam.point - center) + TRUST * (beam.image - center));
+    }
+    let point = center + matrix.inverse() * right;
+    point.is_finite().then_some(point)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rays that come from a point, seen in a leaf of half size 0.1 about the origin.
+    fn beams(from: Vec3A, image: Vec3A) -> Vec<Beam> {
+        let at = |i: usize| 0.1 * Vec3A::from([0.7, 0.3, 0.9].map(|s| (s * i as f32).sin()));
+        let beam = |i| {
+            let direction = (from - at(i)).normalize();
+            Beam { leaf: 8, origin: (0, 0), fluence: 0.5, point: at(i), direction, image }
+        };
+        (0..32).map(beam).collect()
+    }
+
+    #[test]
+    fn bundles_point_to_the_image_of_their_light() {
+        // Off a flat mirror, where the image is known; off a bent one, where only the rays tell; of
+        // the sun, whose rays are parallel.
+        let near = Vec3A::new(0.5, -0.3, 0.8);
+        let sun = 1e4 * Vec3A::new(0.6, 0.0, 0.8);
+        for (from, image, error) in [(near, near, 1e-4), (near, 3.0 * near, 0.05), (sun, sun, 10.0)]
+        {
+            let foci = Foci::new(beams(from, image), 9);
+            let [focus] = foci.of(8) else { panic!("one bundle: {foci:?}") };
+            let off = (focus.point - from).length();
+            assert!(off < error, "{from}: {} is off by {off}", focus.point);
+            assert!((focus.fluence - 16.0).abs() < 1e-4 && focus.concentration > 1e3, "{focus:?}");
+            assert!(foci.of(7).is_empty());
+        }
+    }
+
+    #[test]
+    fn few_rays_and_faint_bundles_are_left_out() {
+        let near = Vec3A::X;
+        assert!(Foci::new(beams(near, near)[..2].to_vec(), 9).of(8).is_empty());
+        let many: Vec<Beam> = (0..6)
+            .flat_map(|light| {
+                let with = move |beam: Beam| Beam {
+                    origin: (0, light),
+                    fluence: light as f32 + 1.0,
+                    ..beam
+                };
+                beams(near, near).into_iter().map(with)
+            })
+            .collect();
+        let foci = Foci::new(many, 9);
+        let kept: Vec<f32> = foci.of(8).iter().map(|focus| focus.fluence / 32.0).collect();
+        assert_eq!(kept, [6.0, 5.0, 4.0, 3.0]);
+    }
+}
