@@ -1,10 +1,8 @@
 //! The table along a ray against closed forms.
 
-mod common;
-
 use std::sync::Arc;
 
-use common::{build, with_strategy};
+use crate::common::{build, with_strategy};
 use flambeau::math::Ray;
 use flambeau::transport::{
     Frame, Scene,

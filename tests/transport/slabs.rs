@@ -5,10 +5,8 @@
 //! radiance 1 is its reflectance for light along the normal (hemisphere on the camera's side) or
 //! its transmittance (hemisphere behind). Black planes make the hemispheres.
 
-mod common;
-
-use common::{
-    Verdicts, build, every_guide, every_line_setting, full_name, half_of_strategies, measure,
+use crate::common::{
+    Verdicts, build, every_guide, every_line_setting, full_name, half_of_strategies,
     measure_enough, name, with_strategy,
 };
 use flambeau::transport::strategy::{Preset, Strategy};
@@ -79,7 +77,7 @@ fn reflectance_and_transmittance() {
                 let label = format!("{what} of g {g}, albedo {albedo}, depth {depth}, {preset}");
                 verdicts.check(
                     &label,
-                    &measure(&scene, paths_for(expected, &scene.strategy)),
+                    &measure_enough(&scene, 2 * paths_for(expected, &scene.strategy)),
                     expected,
                 );
             }
@@ -189,7 +187,7 @@ fn a_conservative_slab_keeps_everything() {
         let scene = build(&slab(g, 1.0, depth, "[environment]\nradiance = 1.0"));
         for strategy in half_of_strategies() {
             let label = format!("white slab, g {g}, depth {depth}, {}", name(&strategy));
-            let estimate = measure(&with_strategy(&scene, strategy), 40_000);
+            let estimate = measure_enough(&with_strategy(&scene, strategy), 200_000);
             verdicts.check(&label, &estimate, 1.0);
         }
     }

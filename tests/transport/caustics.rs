@@ -1,10 +1,8 @@
 //! Light that metals throw into the medium, found by directions towards its images.
 
-mod common;
-
-use common::{
-    POWER, Verdicts, asking, build, full_name, measure_closely, measure_enough, measure_with,
-    with_strategy,
+use crate::common::{
+    POWER, Verdicts, asking, build, full_name, measure_closely, measure_enough, measure_to,
+    measure_with, with_strategy,
 };
 use flambeau::transport::{
     PathSample,
@@ -157,7 +155,7 @@ fn light_off_a_mirror_is_that_of_its_image() {
         with(|a| (a.guide_directions, a.guide_all_vertices) = (false, true)),
     ] {
         let label = full_name(&strategy);
-        let found = measure_with(&with_strategy(&mirror, strategy), 600_000, scattered);
+        let found = measure_to(&with_strategy(&mirror, strategy), 3_000_000, POWER, scattered);
         for channel in 0..3 {
             verdicts.check_equal(&label, &found, &expected, channel);
             let error = found.error(channel).max(expected.error(channel));

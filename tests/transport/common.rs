@@ -4,7 +4,6 @@
 //! of M comparisons at most M times that; no family here has more than a thousand. The standard
 //! error is held to 0.5 % of the expected value unless a test says why not, so that an error of
 //! 5 % in any of them is found with near certainty.
-#![allow(dead_code)]
 
 use std::{
     path::Path,
@@ -13,7 +12,7 @@ use std::{
 
 use flambeau::{
     error::NO_PROGRESS,
-    math::Rgb,
+    math::{ACCUMULATORS, Rgb},
     render::{Film, estimate::PixelEstimate},
     scene::{self, Overrides, VolumeCache},
     transport::{
@@ -295,35 +294,60 @@ fn measure_in_turn(
     paths: u32,
     of: impl Fn(&PathSample) -> Rgb + Sync,
 ) -> Estimate {
+    let mut rows = Rows::default();
     let samples = paths.div_ceil(SIDE * SIDE).max(2);
-    let frame = |s: u32| &frames[(s as usize * frames.len()) / samples as usize];
-    let rows: Vec<Estimate> = (0..SIDE)
-        .into_par_iter()
-        .map(|y| {
-            let mut film = Film::new(UVec2::new(SIDE, 1)).unwrap();
-            let mut sums = Estimate::default();
+    rows.add(samples, |s| &frames[(s as usize * frames.len()) / samples as usize], of);
+    rows.estimate()
+}
+
+/// A film that is filled further and further.
+struct Rows {
+    films: Vec<Film>,
+    samples: u32,
+}
+
+impl Default for Rows {
+    fn default() -> Self {
+        let films = (0..SIDE).map(|_| Film::new(UVec2::new(SIDE, 1)).unwrap()).collect();
+        Self { films, samples: 0 }
+    }
+}
+
+impl Rows {
+    /// Adds samples until each pixel has so many, each from its frame.
+    fn add<'f>(
+        &mut self,
+        samples: u32,
+        frame: impl Fn(u32) -> &'f Frame + Sync,
+        of: impl Fn(&PathSample) -> Rgb + Sync,
+    ) {
+        let present = self.samples;
+        self.films.par_iter_mut().enumerate().for_each(|(y, film)| {
             for x in 0..SIDE {
-                for s in 0..samples {
-                    let direct = of(&frame(s).sample(UVec2::new(x, y), s));
+                for s in present..samples {
+                    let direct = of(&frame(s).sample(UVec2::new(x, y as u32), s));
                     film.add(UVec2::new(x, 0), &PathSample { direct, ..PathSample::default() });
                 }
-                let pixel = PixelEstimate::of(&film, UVec2::new(x, 0)).unwrap();
-                let (mean, variance) = (pixel.mean(), pixel.variance().unwrap());
-                (0..3).for_each(|c| sums.mean[c] += mean[c]);
-                (0..3).for_each(|c| sums.variance[c] += variance[c]);
             }
             assert_eq!(film.totals.non_finite, 0);
-            sums
-        })
-        .collect();
-    let pixels = f64::from(SIDE * SIDE);
-    let mut estimate = Estimate::default();
-    for c in 0..3 {
-        estimate.mean[c] = rows.iter().map(|row| row.mean[c]).sum::<f64>() / pixels;
-        let variance = rows.iter().map(|row| row.variance[c]).sum::<f64>();
-        estimate.variance[c] = variance / (pixels * pixels);
+        });
+        self.samples = samples;
     }
-    estimate
+
+    /// The mean over all pixels.
+    fn estimate(&self) -> Estimate {
+        let pixels = f64::from(SIDE * SIDE);
+        let mut sum = Estimate::default();
+        for film in &self.films {
+            for x in 0..SIDE {
+                let pixel = PixelEstimate::of(film, UVec2::new(x, 0)).unwrap();
+                let (mean, variance) = (pixel.mean(), pixel.variance().unwrap());
+                (0..3).for_each(|c| sum.mean[c] += mean[c] / pixels);
+                (0..3).for_each(|c| sum.variance[c] += variance[c] / (pixels * pixels));
+            }
+        }
+        sum
+    }
 }
 
 /// The mean radiance over the whole film.
@@ -332,31 +356,49 @@ pub fn measure(scene: &Scene, paths: u32) -> Estimate {
 }
 
 /// The mean radiance over the whole film, of so many paths as bring its standard error to
-/// [`POWER`], and `most` at most. How many that is, a first few of them tell by their variance.
+/// [`POWER`], and about `most` at most.
 pub fn measure_enough(scene: &Scene, most: u32) -> Estimate {
-    measure_to(scene, most, POWER)
+    measure_to(scene, most, POWER, PathSample::beauty)
 }
 
 /// The same to half of [`POWER`], to hold others against.
 pub fn measure_closely(scene: &Scene, most: u32) -> Estimate {
-    measure_to(scene, most, 0.5 * POWER)
+    measure_to(scene, most, 0.5 * POWER, PathSample::beauty)
 }
 
-fn measure_to(scene: &Scene, most: u32, power: f64) -> Estimate {
-    const MARGIN: f64 = 0.85;
-    let reached = |estimate: &Estimate| {
-        let relative = |channel: usize| estimate.error(channel) / estimate.mean[channel].abs();
-        let worst = (0..3).map(relative).fold(0.0, f64::max) / power;
-        if worst.is_finite() { worst } else { f64::INFINITY }
-    };
-    let few = (most / 16).max(16 * SIDE * SIDE).min(most);
-    let first = measure(scene, few);
-    let wanted = f64::from(few) * (reached(&first) / MARGIN).powi(2);
-    if wanted <= f64::from(few) {
-        return first;
+/// The mean over the whole film of what `of` takes from each path, by so many paths as bring its
+/// standard error to `power`, relative to it, and about `most` at most.
+///
+/// It goes on until the samples so far have brought the error. To stop by their variance moves their
+/// mean by next to nothing, there being thousands of pixels.
+pub fn measure_to(
+    scene: &Scene,
+    most: u32,
+    power: f64,
+    of: impl Fn(&PathSample) -> Rgb + Sync,
+) -> Estimate {
+    const ROUND: u32 = ACCUMULATORS as u32;
+    const MARGIN: f64 = 0.98;
+    let frame = framed(scene, SIDE);
+    let most = most.div_ceil(SIDE * SIDE * ROUND).max(1) * ROUND;
+    let (mut rows, mut wanted) = (Rows::default(), ROUND);
+    loop {
+        rows.add(wanted, |_| &frame, &of);
+        let estimate = rows.estimate();
+        let missing = worst_error(&estimate) / (MARGIN * power);
+        if missing <= 1.0 || wanted >= most {
+            return estimate;
+        }
+        let next = f64::from(wanted) * missing.powi(2).min(4.0);
+        wanted = (next as u32 / ROUND + 1).saturating_mul(ROUND).min(most);
     }
-    let enough = measure(scene, wanted.min(f64::from(most)) as u32);
-    if reached(&enough) > 1.0 && wanted < f64::from(most) { measure(scene, most) } else { enough }
+}
+
+/// The largest standard error among the channels, relative to its mean.
+fn worst_error(estimate: &Estimate) -> f64 {
+    let relative = |channel: usize| estimate.error(channel) / estimate.mean[channel].abs();
+    let worst = (0..3).map(relative).fold(0.0, f64::max);
+    if worst.is_finite() { worst } else { f64::INFINITY }
 }
 
 /// Comparisons gathered, so that one run shows all that fail.
@@ -376,6 +418,11 @@ impl Verdicts {
     /// Comparisons whose standard error may be as large as `power`, relative to what is expected.
     pub fn of_power(power: f64) -> Self {
         Self { failures: Vec::new(), count: 0, power }
+    }
+
+    /// Largest standard error, relative to what is expected.
+    pub fn power(&self) -> f64 {
+        self.power
     }
 
     /// Holds channel 0 of an estimate against a known value.

@@ -1,10 +1,8 @@
 //! Scenes at the ends of single precision: a render of them ends, and says what it could not do.
 
-mod common;
-
 use std::sync::Arc;
 
-use common::build;
+use crate::common::{self, build};
 use flambeau::transport::{
     Frame, PathSample, PixelSampler,
     strategy::{BoostMode, Preset, Strategy},

@@ -1,11 +1,9 @@
 //! The noise that a film shows is the noise there is: what its accumulators say of one render
 //! agrees with the spread between renders of different seeds.
 
-mod common;
-
 use std::sync::Arc;
 
-use common::{Z_LIMIT, build, with_strategy};
+use crate::common::{Z_LIMIT, build, with_strategy};
 use flambeau::{
     math::ACCUMULATORS,
     render::{Film, estimate::PixelEstimate},

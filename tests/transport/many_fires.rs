@@ -1,9 +1,7 @@
 //! Scenes with several fires and other lights, files placed freely and shared: looks at the fire
 //! or none, and whichever way the light is chosen, one picture.
 
-mod common;
-
-use common::{Verdicts, build, measure_with, with_strategy};
+use crate::common::{self, Verdicts, build, measure_to, with_strategy};
 use flambeau::transport::{
     PathSample, Scene,
     strategy::{Advanced, BoostMode, LightSelection, NeeEvaluation, Strategy},
@@ -43,10 +41,10 @@ fn lit(sample: &PathSample) -> flambeau::math::Rgb {
 
 /// Holds the light of `looks` against that without any.
 fn agree(scene: &Scene, looks: &[(String, Strategy)], [looked, unlooked]: [u32; 2]) {
-    let reference = measure_with(&with_strategy(scene, blind()), unlooked, lit);
+    let reference = measure_to(&with_strategy(scene, blind()), 2 * unlooked, common::POWER, lit);
     let mut verdicts = Verdicts::default();
     for (name, look) in looks {
-        let estimate = measure_with(&with_strategy(scene, *look), looked, lit);
+        let estimate = measure_to(&with_strategy(scene, *look), 2 * looked, common::POWER, lit);
         for channel in 0..3 {
             verdicts.check_equal(name, &estimate, &reference, channel);
             let weak = |estimate: &common::Estimate| {

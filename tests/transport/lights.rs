@@ -5,11 +5,9 @@
 //! Wilson and Hilferty's cube root, may be up to 5 (one false alarm in 3.5e6 tests). With 60 000
 //! draws, densities off by 5 % at half of the directions would give 6 or more.
 
-mod common;
-
 use std::{f64::consts::TAU, sync::Arc};
 
-use common::{Z_LIMIT, build};
+use crate::common::{self, Z_LIMIT, build};
 use flambeau::{
     math::{Aabb, Frame, PathRng, Ray, Rgb, luminance},
     sampling::warp::about_axis,

@@ -1,10 +1,8 @@
 //! Furnaces: scenes in equilibrium, in which every pixel has the same known radiance, and places
 //! where renderers have been seen to go wrong.
 
-mod common;
-
-use common::{
-    Verdicts, build, every_guide, every_line_setting, full_name, half_of_strategies, measure,
+use crate::common::{
+    Verdicts, build, every_guide, every_line_setting, full_name, half_of_strategies,
     measure_enough, name, with_strategy,
 };
 
@@ -116,7 +114,7 @@ fn nothing_is_lost_by_any_guide() {
     let scene = build(&format!("{CAMERA}{environment}{volumes}"));
     let mut verdicts = Verdicts::default();
     for strategy in every_guide() {
-        let estimate = measure(&with_strategy(&scene, strategy), 50_000);
+        let estimate = measure_enough(&with_strategy(&scene, strategy), 200_000);
         for channel in 0..3 {
             verdicts.check_channel(&full_name(&strategy), &estimate, channel, 1.0);
         }
@@ -244,7 +242,7 @@ fn light_samples_leave_the_medium() {
     let scene = build(text);
     let mut verdicts = Verdicts::default();
     for strategy in half_of_strategies() {
-        let estimate = measure(&with_strategy(&scene, strategy), 50_000);
+        let estimate = measure_enough(&with_strategy(&scene, strategy), 200_000);
         verdicts.check(&name(&strategy), &estimate, expected);
     }
     verdicts.finish();

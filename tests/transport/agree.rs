@@ -1,10 +1,10 @@
 //! One scene, every combination of the toggles, one picture; and its error falls as 1/N.
 
-mod common;
-
 use std::sync::Arc;
 
-use common::{Verdicts, all_strategies, build, measure, measure_enough, name, with_strategy};
+use crate::common::{
+    self, Verdicts, all_strategies, build, measure_closely, measure_enough, name, with_strategy,
+};
 use flambeau::transport::{
     Frame, PixelSampler,
     probes::Probes,
@@ -73,7 +73,7 @@ const EVERYTHING: &str = r#"
 #[test]
 fn every_combination_gives_one_picture() {
     let scene = build(EVERYTHING);
-    let reference = measure(&with_strategy(&scene, Preset::Full.strategy()), 2_000_000);
+    let reference = measure_closely(&with_strategy(&scene, Preset::Full.strategy()), 4_000_000);
     let mut verdicts = Verdicts::default();
     let literal = Advanced { boost_mode: BoostMode::Literal, ..Advanced::default() };
     let strong = Advanced { boost_amount: 5.0, ..Advanced::default() };
@@ -90,17 +90,17 @@ fn every_combination_gives_one_picture() {
 }
 
 /// relMSE of independent samples falls as 1/N with no plateau: pictures of 4, 16, 64 and 256
-/// samples, made of the same 1024 samples a pixel, against a reference of 4096 others. The
-/// expectation is proportional to 1/N + 1/4096. Samples that are not independent of each other, or
+/// samples, made of the same 1024 samples a pixel, against a reference of 2048 others. The
+/// expectation is proportional to 1/N + 1/2048. Samples that are not independent of each other, or
 /// that bring more variance the more there are, show in the last; that the limit itself is right is
 /// what known values are for.
 ///
-/// Over seven seeds the ratio to the expectation was 0.97 to 1.05, with a deviation of 0.03; the
+/// Over seven seeds, with a reference of 4096, the ratio to the expectation was 0.97 to 1.05, with a deviation of 0.03; the
 /// limits are ten of them away.
 #[test]
 fn the_error_falls_as_one_over_n() {
     const SAMPLES: u32 = 1024;
-    const REFERENCE: u32 = 4096;
+    const REFERENCE: u32 = 2048;
     let advanced = Advanced { low_discrepancy: false, ..Advanced::default() };
     let scene = with_strategy(&build(EVERYTHING), Strategy { advanced, ..Strategy::default() });
     let size = UVec2::splat(32);

@@ -1,12 +1,10 @@
 //! From inside the fire: camera, scattering and looks within an emissive medium that scatters.
 
-mod common;
-
 use std::f64::consts::TAU;
 
-use common::{
-    Verdicts, build, every_line_setting, full_name, measure, measure_with, name, seed,
-    with_strategy,
+use crate::common::{
+    self, Verdicts, build, every_line_setting, full_name, measure_enough, measure_to, measure_with,
+    name, seed, with_strategy,
 };
 use flambeau::{
     math::{PathRng, Ray},
@@ -74,7 +72,7 @@ fn the_furnace_seen_from_inside() {
     let scene = build(&in_the_fire(3.0, surfaces));
     let mut verdicts = Verdicts::default();
     for setting in every_line_setting().into_iter().filter(|setting| setting.nee) {
-        let estimate = measure(&with_strategy(&scene, setting), 60_000);
+        let estimate = measure_enough(&with_strategy(&scene, setting), 200_000);
         for channel in 0..3 {
             verdicts.check_channel(&full_name(&setting), &estimate, channel, 2.0);
         }
@@ -114,8 +112,8 @@ fn fire_lights_itself() {
         let reference = measure_with(&with_strategy(&scene, blind), 300_000, lit);
         for setting in one_of_each_walk() {
             let own_walk = setting.emission_ratio_tracking;
-            let paths = if own_walk { 120_000 } else { 330_000 };
-            let estimate = measure_with(&with_strategy(&scene, setting), paths, lit);
+            let paths = if own_walk { 400_000 } else { 1_000_000 };
+            let estimate = measure_to(&with_strategy(&scene, setting), paths, common::POWER, lit);
             let label = format!("{turns} turns, {}", full_name(&setting));
             for channel in 0..3 {
                 verdicts.check_equal(&label, &estimate, &reference, channel);

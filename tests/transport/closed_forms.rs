@@ -1,10 +1,8 @@
 //! Scenes whose radiance has a closed form or a quadrature.
 
-mod common;
-
-use common::{
-    Estimate, Verdicts, boost_modes, build, few_guides, full_name, half_of_strategies, measure,
-    measure_enough, measure_with, name, with_strategy,
+use crate::common::{
+    self, Estimate, Verdicts, boost_modes, build, few_guides, full_name, half_of_strategies,
+    measure, measure_enough, measure_with, name, with_strategy,
 };
 use flambeau::{
     math::Rgb,
@@ -273,7 +271,7 @@ fn glowing_chromatic_slab() {
     ));
     let mut verdicts = Verdicts::default();
     for strategy in half_of_strategies().into_iter().filter(|s| s.nee).chain(boost_modes()) {
-        let estimate = measure(&with_strategy(&scene, strategy), 150_000);
+        let estimate = measure_enough(&with_strategy(&scene, strategy), 300_000);
         for (channel, (tau, le)) in [(0.5, 1.0), (1.0, 2.0), (1.5_f64, 0.5)].into_iter().enumerate()
         {
             let expected = -le * (-tau).exp_m1();
@@ -349,7 +347,7 @@ fn airlight_by_every_guide() {
             let Advanced { distance, equiangular, .. } = strategy.advanced;
             let alone = distance == Distance::Probes && !equiangular;
             let paths = if alone { 900_000 } else { 100_000 };
-            let estimate = measure(&with_strategy(&scene, strategy), paths);
+            let estimate = measure_enough(&with_strategy(&scene, strategy), 2 * paths);
             verdicts.check(&full_name(&strategy), &estimate, expected);
         }
     }

@@ -4,13 +4,13 @@
 //! τ brings L_e (1 − e^−τ), however the fire is made up. An integral over the directions is all
 //! that is left.
 
-mod common;
-
 use std::f64::consts::{PI, TAU};
 
-use common::{Verdicts, build, every_setting, full_name, measure, measure_with, with_strategy};
+use crate::common::{
+    Verdicts, build, every_setting, full_name, measure_enough, measure_to, with_strategy,
+};
 use flambeau::transport::{
-    PathSample, Scene,
+    Scene,
     strategy::{Advanced, LightSelection, NeeEvaluation, Preset, Strategy},
 };
 use glam::{DAffine3, DVec3};
@@ -50,7 +50,7 @@ fn check_direct(
     for setting in settings {
         let paths = if setting.nee { paths } else { 3 * paths };
         let estimate =
-            measure_with(&with_strategy(scene, *setting), paths, |sample: &PathSample| {
+            measure_to(&with_strategy(scene, *setting), 2 * paths, verdicts.power(), |sample| {
                 sample.direct
             });
         for (channel, expected) in expected.into_iter().enumerate() {
@@ -393,7 +393,7 @@ fn a_round_room_lit_by_a_fire() {
         let scene = room(turns);
         for setting in looks() {
             let paths = if setting.nee { 150_000 } else { 300_000 };
-            let estimate = measure(&with_strategy(&scene, setting), paths);
+            let estimate = measure_enough(&with_strategy(&scene, setting), 2 * paths);
             let label = format!("{turns} turns, {}", full_name(&setting));
             verdicts.check(&label, &estimate, expected * unit);
         }

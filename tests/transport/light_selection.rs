@@ -1,9 +1,7 @@
 //! Lights chosen by what probes have seen of them: a distribution that is what it says it is, that
 //! heeds what hides a light, and that changes no picture.
 
-mod common;
-
-use common::{Verdicts, build, full_name, measure_with, with_strategy};
+use crate::common::{self, Verdicts, build, full_name, measure_to, with_strategy};
 use flambeau::{
     light::{By, Choice, Receiver},
     math::{PathRng, Rgb},
@@ -207,16 +205,16 @@ fn whichever_way_lights_are_chosen_there_is_one_picture() {
     let apart = build(&apart);
     let lit = |sample: &PathSample| -> Rgb { sample.direct + sample.indirect };
     let estimate = |scene: &Scene, strategy: Strategy, paths| {
-        let estimate = measure_with(&with_strategy(scene, strategy), paths, lit);
         // Each light gets one look in twenty-two, however near: the same error takes ten times as
         // many paths.
         let uniform = strategy.advanced.light_selection == LightSelection::Uniform;
         let power = if uniform { 2.5 * common::POWER } else { common::POWER };
+        let estimate = measure_to(&with_strategy(scene, strategy), paths, power, lit);
         let weak = |c: usize| estimate.error(c) > power * estimate.mean[c];
         assert!(!(0..3).any(weak), "{}: too weak {estimate:?}", full_name(&strategy));
         estimate
     };
-    let hierarchy = |scene| estimate(scene, by(LightSelection::Hierarchy), 450_000);
+    let hierarchy = |scene| estimate(scene, by(LightSelection::Hierarchy), 1_500_000);
     let references = [hierarchy(&scene), hierarchy(&apart)];
     let mut verdicts = Verdicts::default();
     let probes = by(LightSelection::Probes);
@@ -224,11 +222,11 @@ fn whichever_way_lights_are_chosen_there_is_one_picture() {
     point.advanced.nee_evaluation = NeeEvaluation::Point;
     let [standing, apart] = [(&scene, &references[0]), (&apart, &references[1])];
     for ((scene, reference), strategy, paths) in [
-        (standing, by(LightSelection::Uniform), 600_000),
-        (standing, probes, 600_000),
-        (apart, point, 600_000),
-        (standing, Strategy { probe_mis: false, ..probes }, 1_500_000),
-        (standing, Strategy { emission_ratio_tracking: false, ..probes }, 700_000),
+        (standing, by(LightSelection::Uniform), 2_000_000),
+        (standing, probes, 2_000_000),
+        (apart, point, 2_000_000),
+        (standing, Strategy { probe_mis: false, ..probes }, 4_000_000),
+        (standing, Strategy { emission_ratio_tracking: false, ..probes }, 2_000_000),
     ] {
         let estimate = estimate(scene, strategy, paths);
         for channel in 0..3 {

@@ -1,10 +1,8 @@
 //! A fire whose noise-free picture is known, against every combination of the toggles.
 
-mod common;
-
 use std::sync::Arc;
 
-use common::{Z_LIMIT, build, half_of_strategies, name, seed, shared, with_strategy};
+use crate::common::{self, Z_LIMIT, build, half_of_strategies, name, seed, shared, with_strategy};
 use flambeau::{
     render::{
         Film,

@@ -1,11 +1,9 @@
 //! Ray marching, the one integrator whose pictures are biased: exact where nothing varies, nearer
 //! to the right picture the shorter its step where something does.
 
-mod common;
-
 use std::sync::Arc;
 
-use common::{Estimate, POWER, Verdicts, Z_LIMIT, build, measure, with_strategy};
+use crate::common::{self, Estimate, POWER, Verdicts, Z_LIMIT, build, measure, with_strategy};
 use flambeau::{
     math::mean,
     transport::{

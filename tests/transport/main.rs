@@ -1,0 +1,22 @@
+//! Light in volumes comes out as it must: against known values, other ways to the same value, and what
+//! must not change a picture. One binary, so that long tests run side by side.
+
+mod agree;
+mod caustics;
+mod closed_forms;
+mod common;
+mod extremes;
+mod fire_light;
+mod furnaces;
+mod guiding;
+mod inside_fire;
+mod light_selection;
+mod lights;
+mod many_fires;
+mod march;
+mod noise;
+mod peers;
+mod profile;
+mod settings;
+mod slabs;
+mod walks;
