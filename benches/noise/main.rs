@@ -20,7 +20,7 @@ use scenes::BenchScene;
 #[derive(Parser)]
 #[command(name = "noise", about = "Variance and cost of each strategy, scene by scene")]
 struct Arguments {
-    /// Only scenes whose name contains one of these; `modes`, `distances` or `walks` for another
+    /// Only scenes whose name contains one of these, or is `=` and one of these; `modes`, `distances` or `walks` for another
     /// table than that of the toggles.
     filters: Vec<String>,
     /// Fewer samples and seeds: figures good to 10 to 20 %.
@@ -39,9 +39,9 @@ struct Arguments {
     /// Render as the command line does, film and schedule included, not by a bare loop over pixels.
     #[arg(long)]
     film: bool,
-    /// Only rows whose name contains this.
-    #[arg(long)]
-    rows: Option<String>,
+    /// Only rows whose name contains one of these, or is `=` and one of these; `;` between them.
+    #[arg(long, value_delimiter = ';')]
+    rows: Vec<String>,
     /// Name the scenes.
     #[arg(long)]
     list: bool,
@@ -69,12 +69,18 @@ impl Arguments {
             self.filters.iter().filter(|filter| Table::named(filter).is_none()).collect();
         let chosen = |scene: &BenchScene| {
             let all = filters.is_empty() && scene.tables.contains(&table);
-            all || filters.iter().any(|filter| scene.name.contains(filter.as_str()))
+            all || filters.iter().any(|filter| answers_to(scene.name, filter))
         };
-        let named = |row: &Row| self.rows.as_ref().is_none_or(|part| row.name.contains(part));
+        let named = |row: &Row| {
+            self.rows.is_empty() || self.rows.iter().any(|filter| answers_to(&row.name, filter))
+        };
         let rows = |scene: &BenchScene| rows::of(table, scene).into_iter().filter(named).collect();
         scenes::all().into_iter().filter(chosen).map(|s| (s, rows(&s))).collect()
     }
+}
+
+fn answers_to(name: &str, filter: &str) -> bool {
+    filter.strip_prefix('=').map_or_else(|| name.contains(filter), |whole| name == whole)
 }
 
 fn main() {

@@ -107,16 +107,33 @@ struct Source {
 
 impl Source {
     fn same(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.scene, &other.scene)
-            && self.probes.as_ref().map(Arc::as_ptr) == other.probes.as_ref().map(Arc::as_ptr)
-            && (self.pixel, self.size) == (other.pixel, other.size)
+        self.same_picture(other) && self.pixel == other.pixel
     }
 
-    fn profile(&self) -> Option<Profile> {
-        let ray = self.scene.camera.ray(self.size, self.pixel, Vec2::splat(0.5));
-        let frame = Frame::with_probes(self.scene.clone(), self.size, 0, self.probes.clone());
-        Profile::along(&frame, &ray, ROWS)
+    fn same_picture(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.scene, &other.scene)
+            && self.probes.as_ref().map(Arc::as_ptr) == other.probes.as_ref().map(Arc::as_ptr)
+            && self.size == other.size
     }
+
+    /// Looks into the ray; `known` is the frame of the same picture, if there is one.
+    fn found(&self, known: Option<Arc<Frame>>) -> Found {
+        let Self { scene, probes, size, .. } = self;
+        let frame = known.unwrap_or_else(|| {
+            Arc::new(Frame::with_probes(scene.clone(), *size, 0, probes.clone()))
+        });
+        let ray = scene.camera.ray(*size, self.pixel, Vec2::splat(0.5));
+        let profile = Profile::along(&frame, &ray, ROWS);
+        Found { frame, profile }
+    }
+}
+
+/// What was found along a ray.
+struct Found {
+    /// Kept for the next ray of the same picture: what pays in it takes a while to find out.
+    frame: Arc<Frame>,
+    /// None where the ray meets no medium.
+    profile: Option<Profile>,
 }
 
 /// The picked pixel and what is known of its ray.
@@ -124,7 +141,7 @@ impl Source {
 pub struct Inspector {
     /// Where in the picture, in shares of its sides.
     picked: Option<Vec2>,
-    profile: Background<Source, Option<Profile>>,
+    profile: Background<Source, Found>,
     /// The distance whose values are read.
     at: Option<f32>,
 }
@@ -142,8 +159,12 @@ impl Inspector {
             let pixel = (picked * size.as_vec2()).as_uvec2().min(size - UVec2::ONE);
             Source { scene, probes: engine.probes(), pixel, size }
         });
-        let wake = ctx.clone();
-        self.profile.update(source, Source::same, Source::profile, move || wake.request_repaint());
+        let known =
+            source.as_ref().zip(self.profile.done()).and_then(|(source, (other, found))| {
+                source.same_picture(other).then(|| found.frame.clone())
+            });
+        let (make, wake) = (move |source: &Source| source.found(known), ctx.clone());
+        self.profile.update(source, Source::same, make, move || wake.request_repaint());
     }
 
     /// Picks the pixel that is clicked, marks it and shows what lies along its ray; whether to go
@@ -173,7 +194,7 @@ impl Inspector {
     }
 
     fn contents(&mut self, ui: &mut Ui) {
-        let Some((source, profile)) = self.profile.done() else {
+        let Some((source, Found { profile, .. })) = self.profile.done() else {
             ui.label("Looking …");
             return;
         };
