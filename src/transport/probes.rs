@@ -321,12 +321,14 @@ impl Probes {
         self.radiance(self.octree.leaf_at(point), direction)
     }
 
-    /// The bundles of light around a point, and ∫ L dω of all other light that comes indirectly.
-    pub(super) fn bundles(&self, point: Vec3A) -> (&[Focus], f32) {
-        let Some(leaf) = self.octree.leaf_at(point) else { return (&[], 0.0) };
+    /// What is known of the light around a point; `None` outside of the octree.
+    pub(super) fn around(&self, point: Vec3A) -> Option<Surroundings<'_>> {
+        let leaf = self.octree.leaf_at(point)?;
+        let probe = &self.probes[leaf as usize];
         let foci = self.foci.of(leaf);
         let bundled: f32 = foci.iter().map(|focus| focus.fluence).sum();
-        (foci, (self.probes[leaf as usize].indirect_fluence() - bundled).max(0.0))
+        let [direct, indirect] = probe.fluences();
+        Some(Surroundings { foci, direct, indirect: (indirect - bundled).max(0.0) })
     }
 
     /// Takes bundles of light.
@@ -375,6 +377,17 @@ impl Probes {
         };
         Stretch { t0, t1, mu_t, majorant, scattered: mu_s }
     }
+}
+
+/// The light around a point, as ∫ L dω of its parts.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Surroundings<'p> {
+    /// Bundles of light that metals throw.
+    pub(super) foci: &'p [Focus],
+    /// What comes straight from lights.
+    pub(super) direct: f32,
+    /// All else.
+    pub(super) indirect: f32,
 }
 
 /// ∫ L ρ dω in a leaf back along a ray with the unit `direction`.

@@ -152,9 +152,9 @@ impl Probe {
         })
     }
 
-    /// ∫ L dω of what arrives indirectly.
-    pub(super) fn indirect_fluence(&self) -> f32 {
-        self.indirect.fluence
+    /// ∫ L dω of what arrives straight from lights, and indirectly.
+    pub(super) fn fluences(&self) -> [f32; 2] {
+        [self.lobes.iter().map(|lobe| lobe.fluence).sum(), self.indirect.fluence]
     }
 
     /// Mean cosine of the scattering.
@@ -169,8 +169,7 @@ impl Probe {
 
     /// Radiance scattered per unit of μ_s, whatever the direction.
     pub(super) fn radiance(&self) -> f32 {
-        let fluence: f32 = self.lobes.iter().map(|lobe| lobe.fluence).sum();
-        self.ambient + (self.indirect.fluence + fluence) / (4.0 * PI)
+        self.ambient + self.fluences().iter().sum::<f32>() / (4.0 * PI)
     }
 }
 
