@@ -15,6 +15,7 @@ pub struct Engine {
     film: Film,
     schedule: Schedule,
     seconds: f64,
+    cpu_seconds: f64,
 }
 
 /// What a step came to.
@@ -43,7 +44,7 @@ impl Engine {
     ) -> Self {
         let (passes, _) = film.sample_range();
         let schedule = Schedule::new(film.size(), passes, limits, seconds_per_path);
-        Self { sampler, film, schedule, seconds: 0.0 }
+        Self { sampler, film, schedule, seconds: 0.0, cpu_seconds: 0.0 }
     }
 
     /// Throws the samples away and begins again with another sampler.
@@ -51,7 +52,7 @@ impl Engine {
         self.film.clear();
         let (limits, cost) = (self.schedule.limits(), self.schedule.seconds_per_path());
         self.schedule = Schedule::new(self.film.size(), 0, limits, cost);
-        (self.sampler, self.seconds) = (sampler, 0.0);
+        (self.sampler, self.seconds, self.cpu_seconds) = (sampler, 0.0, 0.0);
     }
 
     /// Does the next piece of work, unless `stop` says so earlier.
@@ -65,6 +66,7 @@ impl Engine {
         let outcome = pool.sample(&mut self.film, &*self.sampler, &work, stop);
         let seconds = start.elapsed().as_secs_f64();
         self.seconds += seconds;
+        self.cpu_seconds += outcome.cpu_seconds;
         self.schedule.measured(outcome.totals.paths, seconds);
         if let Some(failure) = outcome.failure {
             return Step::Failed(failure);
@@ -124,6 +126,16 @@ impl Engine {
     /// Seconds of rendering so far.
     pub fn seconds(&self) -> f64 {
         self.seconds
+    }
+
+    /// CPU time that the sampling threads have spent on it, in seconds.
+    pub fn cpu_seconds(&self) -> f64 {
+        self.cpu_seconds
+    }
+
+    /// Changes when to stop.
+    pub fn set_limits(&mut self, limits: Limits) {
+        self.schedule.set_limits(limits);
     }
 
     /// The film as it stands.

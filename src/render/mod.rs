@@ -4,7 +4,8 @@
 //!   bit for bit; [`estimate`] reads means and variances from them, [`publish`] whole pictures.
 //! - [`schedule`]: pure logic; from what is done and what it cost to the next piece of work.
 //! - [`pool`] does one piece of work on all threads, [`engine`] repeats that. The window's
-//!   [`session`] and the command line's [`headless`] both drive the same engine.
+//!   [`session`] and the command line's [`headless`] both drive the same engine; where two of them
+//!   share the threads, [`turns`] says whose turn it is.
 
 pub mod engine;
 pub mod estimate;
@@ -15,6 +16,8 @@ pub mod pool;
 pub mod publish;
 pub mod schedule;
 pub mod session;
+mod thread_time;
+pub mod turns;
 
 pub use estimate::FilmStats;
 pub use film::Film;

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 
 use super::film::{Film, Sums, TILE, Totals, add_sample, row_pixels};
 use super::schedule::{Work, representative};
+use super::thread_time::thread_seconds;
 use crate::error::{Error, Result};
 use crate::transport::PixelSampler;
 
@@ -61,6 +62,9 @@ impl std::fmt::Display for Failure {
 pub struct Outcome {
     /// Counts of what was done, all of it or not.
     pub totals: Totals,
+    /// CPU time that the threads spent on it, in seconds; what threads of a sampler's own spend is
+    /// not among it.
+    pub cpu_seconds: f64,
     /// Whether the whole piece was done.
     pub complete: bool,
     /// The first failure that a thread reported.
@@ -109,7 +113,7 @@ impl Pool {
         let row = Row { sampler, work, size: film.size(), tiles: film.tiles(), stop };
         let first_row = work.tiles.start * TILE as usize;
         let (counts, sums) = film.tiles_mut(work.tiles.clone());
-        let (totals, complete) = self.threads.install(|| {
+        let Done { totals, cpu_seconds, complete } = self.threads.install(|| {
             counts
                 .par_chunks_mut(TILE as usize)
                 .zip(sums.par_chunks_mut(TILE as usize))
@@ -118,11 +122,32 @@ impl Pool {
                 .map(|(index, (counts, sums))| {
                     row.sample(first_row + index, counts, sums, &failure)
                 })
-                .reduce(|| (Totals::default(), true), |a, b| (a.0.plus(b.0), a.1 && b.1))
+                .reduce(Done::nothing, Done::plus)
         });
         film.totals = film.totals.plus(totals);
         let failure = failure.into_inner().unwrap_or_else(PoisonError::into_inner);
-        Outcome { totals, complete: complete && failure.is_none(), failure }
+        Outcome { totals, cpu_seconds, complete: complete && failure.is_none(), failure }
+    }
+}
+
+/// What was done of some rows.
+struct Done {
+    totals: Totals,
+    cpu_seconds: f64,
+    complete: bool,
+}
+
+impl Done {
+    fn nothing() -> Self {
+        Self { totals: Totals::default(), cpu_seconds: 0.0, complete: true }
+    }
+
+    fn plus(self, other: Self) -> Self {
+        Self {
+            totals: self.totals.plus(other.totals),
+            cpu_seconds: self.cpu_seconds + other.cpu_seconds,
+            complete: self.complete && other.complete,
+        }
     }
 }
 
@@ -136,14 +161,15 @@ struct Row<'a> {
 }
 
 impl Row<'_> {
-    /// Samples one row of a tile; returns its counts and whether it was done to the end.
+    /// Samples one row of a tile.
     fn sample(
         &self,
         row: usize,
         counts: &mut [u32],
         sums: &mut [Sums],
         failure: &Mutex<Option<Failure>>,
-    ) -> (Totals, bool) {
+    ) -> Done {
+        let start = thread_seconds();
         let at = Cell::new(None);
         let totals = Cell::new(Totals::default());
         // The sums of a pixel change only after its sample is complete, so a panicking sampler
@@ -173,7 +199,7 @@ impl Row<'_> {
             failure.get_or_insert(Failure { at: at.get(), message: panic_message(&*panic) });
             false
         });
-        (totals.get(), done)
+        Done { totals: totals.get(), cpu_seconds: thread_seconds() - start, complete: done }
     }
 }
 
@@ -224,6 +250,20 @@ mod tests {
         assert_eq!(one.sample_range(), (11, 11));
         assert_eq!(rendered(2), one);
         assert_eq!(rendered(4), one);
+    }
+
+    /// Much more work costs more, on whichever threads it is done.
+    #[test]
+    fn the_cpu_time_is_that_of_the_work() {
+        let seconds = |cost| {
+            let pool = Pool::new(Some(2), Priority::Normal).unwrap();
+            let mut film = Film::new(SIZE).unwrap();
+            let work = whole(&film, 11);
+            let sampler = Uniform { cost, ..Uniform::default() };
+            pool.sample(&mut film, &sampler, &work, &|| false).cpu_seconds
+        };
+        let (light, heavy) = (seconds(0), seconds(5000));
+        assert!(light > 0.0 && heavy > 3.0 * light, "{light} s and {heavy} s");
     }
 
     #[test]

@@ -193,6 +193,11 @@ impl Schedule {
         self.limits
     }
 
+    /// Changes when it is to stop.
+    pub fn set_limits(&mut self, limits: Limits) {
+        self.limits = limits;
+    }
+
     /// The measured cost of a path with all threads at work, for the next plan.
     pub fn seconds_per_path(&self) -> Option<f64> {
         self.seconds_per_path

@@ -1,0 +1,89 @@
+//! Whose turn it is when renders share one machine: pure bookkeeping, no threads and no clocks.
+//!
+//! The next piece of work goes to the side that has had least so far. A piece never lasts longer
+//! than the schedule lets it, so sides are never further apart than one piece of one of them.
+
+/// What one side has had so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Account {
+    /// CPU time of the sampling threads, in seconds.
+    pub cpu_seconds: f64,
+    /// Mean number of samples of a pixel.
+    pub samples: f64,
+    /// Whether it takes no more turns: its limit is reached, or it has failed.
+    pub closed: bool,
+}
+
+/// What the sides get equal shares of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Share {
+    /// CPU time: which side makes more of it?
+    #[default]
+    CpuTime,
+    /// Samples per pixel: which side makes more of them?
+    Samples,
+}
+
+impl Account {
+    fn had(&self, share: Share) -> f64 {
+        match share {
+            Share::CpuTime => self.cpu_seconds,
+            Share::Samples => self.samples,
+        }
+    }
+}
+
+/// The side whose turn it is: of those not closed the one that has had least, of several the first.
+/// `None` when all are closed.
+pub fn next(accounts: &[Account], share: Share) -> Option<usize> {
+    let open = accounts.iter().enumerate().filter(|(_, account)| !account.closed);
+    open.min_by(|(_, a), (_, b)| a.had(share).total_cmp(&b.had(share))).map(|(side, _)| side)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Gives out turns of `pieces` (seconds, samples) a side until `turns` are over.
+    fn play(pieces: [(f64, f64); 2], share: Share, turns: usize) -> [Account; 2] {
+        let mut accounts = [Account::default(); 2];
+        for _ in 0..turns {
+            let side = next(&accounts, share).unwrap();
+            accounts[side].cpu_seconds += pieces[side].0;
+            accounts[side].samples += pieces[side].1;
+        }
+        accounts
+    }
+
+    #[test]
+    fn sides_stay_within_one_piece_of_each_other() {
+        let pieces = [(0.1, 8.0), (0.37, 1.0)];
+        for turns in 1..200 {
+            let [a, b] = play(pieces, Share::CpuTime, turns);
+            assert!((a.cpu_seconds - b.cpu_seconds).abs() <= 0.37 + 1e-9, "{turns} turns");
+            let [a, b] = play(pieces, Share::Samples, turns);
+            assert!((a.samples - b.samples).abs() <= 8.0 + 1e-9, "{turns} turns");
+        }
+    }
+
+    #[test]
+    fn the_first_begins_and_equal_sides_alternate() {
+        let mut accounts = [Account::default(); 2];
+        let mut order = Vec::new();
+        for _ in 0..6 {
+            let side = next(&accounts, Share::Samples).unwrap();
+            accounts[side].samples += 1.0;
+            order.push(side);
+        }
+        assert_eq!(order, [0, 1, 0, 1, 0, 1]);
+    }
+
+    #[test]
+    fn closed_sides_get_no_turn() {
+        let open = Account { cpu_seconds: 9.0, samples: 9.0, closed: false };
+        let closed = Account { closed: true, ..Account::default() };
+        assert_eq!(next(&[closed, open], Share::CpuTime), Some(1));
+        assert_eq!(next(&[closed, closed], Share::CpuTime), None);
+        assert_eq!(next(&[], Share::Samples), None);
+    }
+}
