@@ -78,7 +78,7 @@ pub fn read_info(path: &Path) -> Result<Info> {
     info(path, open(path)?.meta_data())
 }
 
-fn open(path: &Path) -> Result<Reader<BufReader<File>>> {
+pub(super) fn open(path: &Path) -> Result<Reader<BufReader<File>>> {
     let file = File::open(path).map_err(|e| Error::io(path, e))?;
     exr::block::read(BufReader::new(file), false).map_err(|e| exr_error(path, e))
 }
@@ -245,11 +245,11 @@ impl<'a> State<'a> {
     }
 }
 
-fn invalid(path: &Path, field: &str, reason: impl Into<String>) -> Error {
+pub(super) fn invalid(path: &Path, field: &str, reason: impl Into<String>) -> Error {
     Error::invalid(path.display().to_string(), field, reason)
 }
 
-fn exr_error(path: &Path, error: exr::error::Error) -> Error {
+pub(super) fn exr_error(path: &Path, error: exr::error::Error) -> Error {
     match error {
         exr::error::Error::Io(e) => Error::io(path, e),
         exr::error::Error::NotSupported(what) => {

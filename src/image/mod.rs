@@ -1,11 +1,17 @@
 //! Pictures on disk and their way to a screen.
 //!
 //! [`exr`] keeps everything and can be continued; [`npy`] is the beauty for scripts; [`png`] is what
-//! the screen shows, through the curves of [`tone`].
+//! the screen shows, through the curves of [`tone`]. A [`reference`](mod@reference) is what pictures
+//! are compared with.
 
 pub mod exr;
+mod exr_color;
 mod exr_header;
 mod exr_layout;
 pub mod npy;
+mod npy_header;
 pub mod png;
+pub mod reference;
 pub mod tone;
+
+pub use reference::Reference;
