@@ -1,13 +1,14 @@
 //! Pictures on disk and their way to a screen.
 //!
 //! [`exr`] keeps everything and can be continued; [`npy`] is the beauty for scripts; [`png`] is what
-//! the screen shows, through the curves of [`tone`]. A [`reference`](mod@reference) is what pictures
-//! are compared with.
+//! the screen shows, through the curves of [`tone`]. [`metrics`] tell how far a picture is from a
+//! [`reference`](mod@reference).
 
 pub mod exr;
 mod exr_color;
 mod exr_header;
 mod exr_layout;
+pub mod metrics;
 pub mod npy;
 mod npy_header;
 pub mod png;

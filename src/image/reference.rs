@@ -95,6 +95,19 @@ impl Reference {
         );
         Err(Error::invalid(&self.name, "", reason))
     }
+
+    /// Checks that `picture` has as many pixels.
+    pub(super) fn check_pixels(&self, picture: &[[f32; 4]]) -> Result<()> {
+        if picture.len() == self.pixels.len() {
+            return Ok(());
+        }
+        let (size, count) = (self.size, picture.len());
+        let reason = format!(
+            "the reference has {} x {} pixels and the picture {count}; both have to be of one size",
+            size.x, size.y
+        );
+        Err(Error::invalid(&self.name, "", reason))
+    }
 }
 
 #[cfg(test)]

@@ -1,0 +1,18 @@
+//! How far a picture is from a reference: one number, and a map of where.
+//!
+//! - [`rel_mse()`] is the usual measure of noise in linear light: squared differences, relative to
+//!   the brightness of the reference.
+//! - [`flip()`] is what somebody notices who flips between the two pictures as the screen shows
+//!   them; [`Flip`] holds on to the reference for many pictures.
+//!
+//! Both give an [`ErrorMap`]; [`magma`] colors it.
+
+mod error_map;
+mod flip;
+mod magma;
+mod rel_mse;
+
+pub use error_map::ErrorMap;
+pub use flip::{Flip, PIXELS_PER_DEGREE, Viewing, flip};
+pub use magma::magma;
+pub use rel_mse::{REL_MSE_FLOOR, rel_mse};
