@@ -3,6 +3,7 @@
 //! [`exr`] keeps everything and can be continued; [`npy`] is the beauty for scripts; [`png`] is what
 //! the screen shows, through the curves of [`tone`]. [`metrics`] tell how far a picture is from a
 //! [`reference`](mod@reference).
+//! the screen shows, through the curves of [`tone`]. [`ramp`] turns numbers into colors.
 
 pub mod exr;
 mod exr_color;
@@ -13,6 +14,7 @@ pub mod npy;
 mod npy_header;
 pub mod png;
 pub mod reference;
+pub mod ramp;
 pub mod tone;
 
 pub use reference::Reference;
