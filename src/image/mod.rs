@@ -4,7 +4,10 @@
 //! the screen shows, through the curves of [`tone`]. [`metrics`] tell how far a picture is from a
 //! [`reference`](mod@reference).
 //! the screen shows, through the curves of [`tone`]. [`ramp`] turns numbers into colors.
+//! the screen shows, through the curves of [`tone`]. [`ramp`] turns numbers into colors, [`map`] a
+//! number a pixel into a picture with its legend, [`plot`] numbers over time into curves.
 
+mod drawing;
 pub mod exr;
 mod exr_color;
 mod exr_header;
@@ -12,6 +15,9 @@ mod exr_layout;
 pub mod metrics;
 pub mod npy;
 mod npy_header;
+pub mod figures;
+pub mod map;
+pub mod plot;
 pub mod png;
 pub mod reference;
 pub mod ramp;

@@ -19,14 +19,22 @@ use crate::math::Rgb;
 pub fn write(path: &Path, size: UVec2, pixels: &[[f32; 4]], tone: Tone) -> Result<()> {
     let codes: Vec<u8> =
         pixels.iter().flat_map(|&[r, g, b, _]| tone.encode(Rgb::new(r, g, b))).collect();
+    write_codes(path, size, &codes)
+}
+
+/// Writes 8-bit sRGB `codes`, three a pixel, row 0 on top.
+///
+/// # Errors
+/// When the system refuses to write.
+pub fn write_codes(path: &Path, size: UVec2, codes: &[u8]) -> Result<()> {
     files::replace(path, |file| {
         let mut writer = BufWriter::new(file);
         PngEncoder::new(&mut writer)
-            .write_image(&codes, size.x, size.y, ExtendedColorType::Rgb8)
+            .write_image(codes, size.x, size.y, ExtendedColorType::Rgb8)
             .map_err(|e| match e {
-            image::ImageError::IoError(e) => Error::io(path, e),
-            other => Error::invalid(path.display().to_string(), "", other.to_string()),
-        })?;
+                image::ImageError::IoError(e) => Error::io(path, e),
+                other => Error::invalid(path.display().to_string(), "", other.to_string()),
+            })?;
         writer.flush().map_err(|e| Error::io(path, e))
     })
 }

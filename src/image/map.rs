@@ -1,0 +1,138 @@
+//! A number a pixel as a picture in the colors of a ramp, with its legend below, as a PNG.
+
+use std::path::Path;
+
+use glam::UVec2;
+
+use super::drawing::{Align, Canvas, color};
+use super::ramp::{self, Scale};
+use crate::error::Result;
+
+/// How numbers become colors.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Colors {
+    /// Positive numbers on a logarithmic scale; zero and less are black.
+    Logarithmic(Scale),
+    /// Numbers of either sign, evenly from minus this number to this number.
+    Signed(f32),
+}
+
+/// A map to draw.
+pub struct Map<'a> {
+    /// What the numbers are.
+    pub title: &'a str,
+    /// What else is to be said about them.
+    pub note: &'a str,
+    /// Width and height in pixels.
+    pub size: UVec2,
+    /// The numbers, row 0 on top.
+    pub values: &'a [f32],
+    /// Their colors.
+    pub colors: Colors,
+    /// How a number is written in the legend.
+    pub label: fn(f64) -> String,
+}
+
+/// The least width of the picture; smaller maps are enlarged, pixel by pixel.
+const LEAST_WIDTH: u32 = 640;
+/// Height of the legend.
+const LEGEND: u32 = 112;
+/// Space around what is in it.
+const MARGIN: i32 = 16;
+/// Height of the bar of colors.
+const BAR: i32 = 14;
+
+impl Colors {
+    fn of(&self, value: f32) -> [u8; 3] {
+        match *self {
+            Self::Logarithmic(scale) if value > 0.0 => ramp::color(scale.place(value)),
+            Self::Logarithmic(_) => [0; 3],
+            Self::Signed(end) if end > 0.0 => ramp::signed_color(value / end),
+            Self::Signed(_) => ramp::signed_color(0.0),
+        }
+    }
+
+    /// The number at a place in 0..=1 of the legend.
+    fn at(&self, place: f32) -> f32 {
+        match *self {
+            Self::Logarithmic(Scale { low, high }) => low * (high / low).powf(place),
+            Self::Signed(end) => end * (2.0 * place - 1.0),
+        }
+    }
+}
+
+/// Draws `map` and writes it.
+///
+/// # Errors
+/// When the system refuses to write.
+pub fn write(path: &Path, map: &Map<'_>) -> Result<()> {
+    let zoom = LEAST_WIDTH.div_ceil(map.size.x.max(1));
+    let shown = map.size * zoom;
+    let mut canvas = Canvas::new(shown + UVec2::new(0, LEGEND));
+    for y in 0..shown.y {
+        for x in 0..shown.x {
+            let index = (y / zoom) as usize * map.size.x as usize + (x / zoom) as usize;
+            let value = map.values.get(index).copied().unwrap_or(0.0);
+            canvas.put(UVec2::new(x, y), map.colors.of(value));
+        }
+    }
+    legend(&mut canvas, map, shown)?;
+    canvas.write(path)
+}
+
+fn legend(canvas: &mut Canvas, map: &Map<'_>, shown: UVec2) -> Result<()> {
+    let (left, right, top) = (MARGIN, shown.x as i32 - MARGIN, shown.y as i32);
+    canvas.text((left, top + 18), Align::Left, color::TEXT, map.title)?;
+    let bar = top + 36;
+    for x in left..right {
+        let place = (x - left) as f32 / (right - left - 1).max(1) as f32;
+        let color = map.colors.of(map.colors.at(place));
+        (bar..bar + BAR).for_each(|y| canvas.put(UVec2::new(x as u32, y as u32), color));
+    }
+    let ends = [(0.0, left, Align::Left), (0.5, (left + right) / 2, Align::Center)];
+    for (place, x, align) in ends.into_iter().chain([(1.0, right, Align::Right)]) {
+        let text = (map.label)(f64::from(map.colors.at(place)));
+        canvas.text((x, bar + BAR + 12), align, color::TEXT, &text)?;
+    }
+    canvas.text((left, bar + BAR + 36), Align::Left, color::DIM, map.note)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::image::figures::percent;
+
+    #[test]
+    fn pixels_have_the_colors_of_their_numbers() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("map.png");
+        let scale = Scale { low: 0.01, high: 1.0 };
+        let size = UVec2::new(3, 2);
+        let draw = |colors: Colors, values: &[f32]| {
+            let map = Map { title: "t", note: "n", size, values, colors, label: percent };
+            write(&path, &map).unwrap();
+            image::open(&path).unwrap().into_rgb8()
+        };
+        let values = [0.01, 0.1, 1.0, 0.0, 5.0, 0.001];
+        let picture = draw(Colors::Logarithmic(scale), &values);
+        let zoom = picture.width() / 3;
+        assert!(zoom > 200 && picture.height() == 2 * zoom + LEGEND);
+        let at = |picture: &image::RgbImage, x: u32, y: u32| {
+            picture.get_pixel(x * zoom + 7, y * zoom + zoom - 1).0
+        };
+        assert_eq!(at(&picture, 0, 0), ramp::color(0.0));
+        assert_eq!(at(&picture, 1, 0), ramp::color(0.5));
+        assert_eq!(at(&picture, 2, 0), ramp::color(1.0));
+        assert_eq!(at(&picture, 0, 1), [0; 3]);
+        assert_eq!(at(&picture, 1, 1), ramp::color(1.0));
+        let middle_of_bar = picture.get_pixel(picture.width() / 2, 2 * zoom + 36 + 7).0;
+        let differs = |(a, b): (u8, u8)| a.abs_diff(b) > 3;
+        let is_other = std::iter::zip(middle_of_bar, ramp::color(0.5)).any(differs);
+        assert!(!is_other, "the legend shows {middle_of_bar:?}");
+        let picture = draw(Colors::Signed(2.0), &[-2.0, 0.0, 1.0, 9.0, -1.0, 0.5]);
+        assert_eq!(at(&picture, 0, 0), ramp::signed_color(-1.0));
+        assert_eq!(at(&picture, 2, 0), ramp::signed_color(0.5));
+        assert_eq!(at(&picture, 0, 1), ramp::signed_color(1.0));
+        draw(Colors::Signed(0.0), &[]);
+    }
+}

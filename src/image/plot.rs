@@ -1,0 +1,192 @@
+//! Curves on logarithmic axes, as a PNG.
+
+use std::path::Path;
+
+use glam::UVec2;
+
+use super::drawing::{Align, Canvas, Place, color};
+use crate::error::Result;
+
+/// A named curve.
+pub struct Curve<'a> {
+    /// What the legend calls it.
+    pub name: &'a str,
+    /// Its points from left to right, both coordinates positive.
+    pub points: &'a [[f64; 2]],
+}
+
+/// An axis.
+pub struct Axis<'a> {
+    /// What it counts, with its unit.
+    pub name: &'a str,
+    /// How a number is written along it.
+    pub label: fn(f64) -> String,
+}
+
+/// Curves to draw.
+pub struct Plot<'a> {
+    /// A sentence above the curves.
+    pub title: &'a str,
+    /// Across and up.
+    pub axes: [Axis<'a>; 2],
+    /// At most as many as there are colors; more begin again with the first.
+    pub curves: &'a [Curve<'a>],
+}
+
+const SIZE: UVec2 = UVec2::new(900, 560);
+/// Borders of the field of the curves: left, top, right, bottom.
+const FIELD: [i32; 4] = [90, 74, 876, 496];
+const COLORS: [[u8; 3]; 2] = [[94, 169, 255], [255, 159, 67]];
+/// The least that an axis spans, as a factor.
+const LEAST_SPAN: f64 = 3.0;
+/// What is left free around the curves, as a factor.
+const MARGIN: f64 = 1.15;
+
+/// Draws `plot` and writes it.
+///
+/// # Errors
+/// When the system refuses to write.
+pub fn write(path: &Path, plot: &Plot<'_>) -> Result<()> {
+    let mut canvas = Canvas::new(SIZE);
+    let [left, _, right, bottom] = FIELD;
+    canvas.text((left, 22), Align::Left, color::TEXT, plot.title)?;
+    canvas.text(
+        ((left + right) / 2, SIZE.y as i32 - 18),
+        Align::Center,
+        color::DIM,
+        plot.axes[0].name,
+    )?;
+    canvas.text((left, 52), Align::Left, color::DIM, plot.axes[1].name)?;
+    let points = || plot.curves.iter().flat_map(|curve| curve.points);
+    if points().next().is_none() {
+        let middle = ((left + right) / 2, bottom / 2);
+        canvas.text(middle, Align::Center, color::DIM, "There are too few samples for a curve")?;
+        return canvas.write(path);
+    }
+    let scales = [0, 1].map(|axis| Scale::over(points().map(|point| point[axis]), axis));
+    grid(&mut canvas, plot, &scales)?;
+    for (number, curve) in plot.curves.iter().enumerate() {
+        let color = COLORS[number % COLORS.len()];
+        draw(&mut canvas, curve, &scales, color)?;
+        let at = (right - 8, FIELD[1] + 18 + 22 * number as i32);
+        canvas.text(at, Align::Right, color, curve.name)?;
+    }
+    canvas.write(path)
+}
+
+/// One logarithmic axis.
+struct Scale {
+    low: f64,
+    high: f64,
+    /// Where its ends are.
+    pixels: [i32; 2],
+}
+
+impl Scale {
+    fn over(values: impl Iterator<Item = f64>, axis: usize) -> Self {
+        let [left, top, right, bottom] = FIELD;
+        let pixels = if axis == 0 { [left, right] } else { [bottom, top] };
+        let (low, high) =
+            values.fold((f64::INFINITY, 0.0_f64), |(low, high), x| (low.min(x), high.max(x)));
+        let widened = (LEAST_SPAN * low / high).max(1.0).sqrt() * MARGIN;
+        Self { low: low / widened, high: high * widened, pixels }
+    }
+
+    fn pixel(&self, value: f64) -> i32 {
+        let place = (value / self.low).ln() / (self.high / self.low).ln();
+        let [start, end] = self.pixels.map(f64::from);
+        (start + place * (end - start)).round() as i32
+    }
+
+    /// The numbers to write along it: 1, 2 and 5 times powers of ten, or the powers alone where
+    /// those would be too many.
+    fn ticks(&self) -> Vec<f64> {
+        let decades = (self.high / self.low).log10();
+        let steps: &[f64] = if decades <= 3.0 { &[1.0, 2.0, 5.0] } else { &[1.0] };
+        let powers = self.low.log10().floor() as i32..=self.high.log10().ceil() as i32;
+        let all = powers.flat_map(|power| steps.iter().map(move |step| step * 10_f64.powi(power)));
+        all.filter(|tick| (self.low..=self.high).contains(tick)).collect()
+    }
+}
+
+fn grid(canvas: &mut Canvas, plot: &Plot<'_>, scales: &[Scale; 2]) -> Result<()> {
+    let [left, top, right, bottom] = FIELD;
+    for tick in scales[0].ticks() {
+        let x = scales[0].pixel(tick);
+        canvas.line(vec![(x, top), (x, bottom)], color::GRID, 1)?;
+        canvas.text((x, bottom + 18), Align::Center, color::TEXT, &(plot.axes[0].label)(tick))?;
+    }
+    for tick in scales[1].ticks() {
+        let y = scales[1].pixel(tick);
+        canvas.line(vec![(left, y), (right, y)], color::GRID, 1)?;
+        canvas.text((left - 8, y), Align::Right, color::TEXT, &(plot.axes[1].label)(tick))?;
+    }
+    Ok(())
+}
+
+fn draw(canvas: &mut Canvas, curve: &Curve<'_>, scales: &[Scale; 2], color: [u8; 3]) -> Result<()> {
+    let place =
+        |point: &[f64; 2]| -> Place { (scales[0].pixel(point[0]), scales[1].pixel(point[1])) };
+    let places: Vec<Place> = curve.points.iter().map(place).collect();
+    if let Some(&(x, y)) = places.last() {
+        // The end is marked, so that a curve of one point shows.
+        canvas.fill([(x - 3, y - 3), (x + 3, y + 3)], color)?;
+    }
+    canvas.line(places, color, 2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::image::figures::percent;
+
+    fn axes() -> [Axis<'static>; 2] {
+        [
+            Axis { name: "CPU seconds", label: |x| x.to_string() },
+            Axis { name: "noise", label: percent },
+        ]
+    }
+
+    fn drawn(curves: &[Curve<'_>]) -> image::RgbImage {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("plot.png");
+        write(&path, &Plot { title: "B needs 1/38 of A's time", axes: axes(), curves }).unwrap();
+        image::open(&path).unwrap().into_rgb8()
+    }
+
+    #[test]
+    fn curves_go_where_their_points_are() {
+        let points: Vec<[f64; 2]> =
+            (0..40).map(|i| 1.25_f64.powi(i)).map(|t| [0.01 * t, 0.3 / t.sqrt()]).collect();
+        let picture =
+            drawn(&[Curve { name: "A", points: &points }, Curve { name: "B", points: &[] }]);
+        assert_eq!(picture.dimensions(), (SIZE.x, SIZE.y));
+        let scales = [0, 1].map(|axis| Scale::over(points.iter().map(|point| point[axis]), axis));
+        for point in &points[1..39] {
+            let [x, y] = [0, 1].map(|axis| scales[axis].pixel(point[axis]) as u32);
+            let is_blue = |x: u32, y: u32| {
+                let [r, _, b] = picture.get_pixel(x, y).0;
+                b > r + 50
+            };
+            assert!((y - 1..=y + 1).any(|y| is_blue(x, y)), "{point:?}");
+        }
+    }
+
+    #[test]
+    fn few_points_or_none_make_a_plot_too() {
+        drawn(&[]);
+        drawn(&[Curve { name: "one", points: &[[3.0, 0.1]] }]);
+        drawn(&[Curve { name: "flat", points: &[[1e-9, 0.1], [1e9, 0.1]] }]);
+    }
+
+    #[test]
+    fn ticks_are_round_and_on_the_axis() {
+        let ticks = |low, high| Scale { low, high, pixels: [0, 100] }.ticks();
+        let close = |a: Vec<f64>, b: &[f64]| {
+            assert_eq!(a.len(), b.len(), "{a:?}");
+            assert!(a.iter().zip(b).all(|(a, b)| (a / b - 1.0).abs() < 1e-9), "{a:?}");
+        };
+        close(ticks(0.15, 12.0), &[0.2, 0.5, 1.0, 2.0, 5.0, 10.0]);
+        close(ticks(0.003, 90.0), &[0.01, 0.1, 1.0, 10.0]);
+    }
+}
