@@ -62,6 +62,44 @@ impl<'a> PixelEstimate<'a> {
         self.variance_of(gray)
     }
 
+    /// Variance of [`Self::gray_variance`] itself: how far it can be trusted. Unbiased where the
+    /// accumulators have equally many samples, so that sums of it over pixels are good to have; of
+    /// one pixel it may be negative. None below two filled accumulators.
+    ///
+    /// Of K independent values with the k-statistics k₂ and k₄, (2 K k₂² + (K − 1) k₄) / (K (K + 1))
+    /// is unbiased for the variance of k₂ whatever their distribution (Kendall and Stuart, *The
+    /// Advanced Theory of Statistics*, vol. 1, ch. 12). For normal ones k₄ vanishes on average,
+    /// which is assumed below four of them. Where one value alone saw any light it is k₂², the
+    /// variance of a count of rare events.
+    pub fn gray_variance_uncertainty(&self) -> Option<f64> {
+        let filled = self.filled();
+        if filled < 2 {
+            return None;
+        }
+        let mut means = [0.0; ACCUMULATORS];
+        for (k, mean) in means[..filled].iter_mut().enumerate() {
+            *mean = gray(values(&self.sums.beauty[k])) / f64::from(self.samples_of(k));
+        }
+        let count = filled as f64;
+        let center = means[..filled].iter().sum::<f64>() / count;
+        let moment = |power: i32| {
+            means[..filled].iter().map(|mean| (mean - center).powi(power)).sum::<f64>() / count
+        };
+        let (second, fourth) = (moment(2), moment(4));
+        let k2 = second * count / (count - 1.0);
+        let k4 = match filled {
+            ..4 => 0.0,
+            _ => {
+                let products = (count - 1.0) * (count - 2.0) * (count - 3.0);
+                let difference = (count + 1.0) * fourth - 3.0 * (count - 1.0) * second * second;
+                count * count * difference / products
+            }
+        };
+        let of_k2 = (2.0 * count * k2 * k2 + (count - 1.0) * k4) / (count * (count + 1.0));
+        // The variance of the mean is k₂ / K.
+        Some(of_k2 / (count * count))
+    }
+
     /// With K accumulators of n_k samples, means m_k, shares w_k = n_k / Σ n_j and m = Σ w_k m_k,
     /// the variance of m is Σ w_k² Var(m_k). It is estimated by Σ a_k (m_k − m)² / (1 + Σ a_k)
     /// with a_k = w_k² / (1 − 2 w_k): as E (m_k − m)² = (1 − 2 w_k) Var(m_k) + Var(m), this is

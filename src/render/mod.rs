@@ -5,8 +5,10 @@
 //! - [`schedule`]: pure logic; from what is done and what it cost to the next piece of work.
 //! - [`pool`] does one piece of work on all threads, [`engine`] repeats that. The window's
 //!   [`session`] and the command line's [`headless`] both drive the same engine; where two of them
-//!   share the threads, [`turns`] says whose turn it is.
+//!   share the threads, [`turns`] says whose turn it is; [`side_by_side`] renders two so, and
+//!   [`compare`] holds their films against each other.
 
+pub mod compare;
 pub mod engine;
 pub mod estimate;
 pub mod film;
@@ -16,6 +18,7 @@ pub mod pool;
 pub mod publish;
 pub mod schedule;
 pub mod session;
+pub mod side_by_side;
 mod thread_time;
 pub mod turns;
 

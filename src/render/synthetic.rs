@@ -4,6 +4,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use glam::UVec2;
 
+use super::film::Film;
 use crate::math::Rgb;
 use crate::transport::{PathSample, PixelSampler};
 
@@ -51,4 +52,54 @@ impl PixelSampler for Uniform {
             guard_hit: false,
         }
     }
+}
+
+/// Gray values of a known mean and variance: uniform on `mean` ± `spread` / 2, so of variance
+/// `spread`² / 12.
+pub(crate) struct Level {
+    pub seed: u64,
+    pub mean: f32,
+    pub spread: f32,
+}
+
+impl PixelSampler for Level {
+    fn sample(&self, pixel: UVec2, sample: u32) -> PathSample {
+        gray(self.mean + self.spread * (uniform(self.seed, pixel, sample) - 0.5))
+    }
+}
+
+/// Black but for rare bright samples: `mean` / `chance` with probability `chance`, so of variance
+/// `mean`² (1 / `chance` − 1).
+pub(crate) struct Fireflies {
+    pub seed: u64,
+    pub mean: f32,
+    pub chance: f32,
+}
+
+impl PixelSampler for Fireflies {
+    fn sample(&self, pixel: UVec2, sample: u32) -> PathSample {
+        let is_lit = uniform(self.seed, pixel, sample) < self.chance;
+        gray(if is_lit { self.mean / self.chance } else { 0.0 })
+    }
+}
+
+fn gray(value: f32) -> PathSample {
+    PathSample { direct: Rgb::splat(value), ..PathSample::default() }
+}
+
+fn uniform(seed: u64, pixel: UVec2, sample: u32) -> f32 {
+    let key = u64::from(pixel.x) | u64::from(pixel.y) << 20 | u64::from(sample) << 40;
+    (mix(key ^ mix(seed)) >> 40) as f32 / (1u64 << 24) as f32
+}
+
+/// A film with so many samples of every pixel.
+pub(crate) fn sampled(sampler: &impl PixelSampler, size: UVec2, samples: u32) -> Film {
+    let mut film = Film::new(size).unwrap();
+    for y in 0..size.y {
+        for x in 0..size.x {
+            let pixel = UVec2::new(x, y);
+            (0..samples).for_each(|s| film.add(pixel, &sampler.sample(pixel, s)));
+        }
+    }
+    film
 }

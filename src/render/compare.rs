@@ -1,0 +1,82 @@
+//! Two films of one scene held against each other: which setting needs less time for the same
+//! noise, by how much, how well that is known, and whether both show the same picture.
+//!
+//! All figures are read from the accumulators of the films and the CPU time spent on them, in one
+//! pass over the pixels that costs about as much as reading both pictures. A stands for the first
+//! film and B for the second.
+
+mod agreement;
+mod area;
+mod history;
+pub mod maps;
+mod speed;
+mod tally;
+
+use rayon::prelude::*;
+
+pub use agreement::{ALARM, Agreement, Difference, FEWEST_SAMPLES, Verdict};
+pub use area::Area;
+pub use history::NoiseHistory;
+pub use speed::SpeedUp;
+
+use super::film::Film;
+use tally::Tally;
+
+/// Figures of one side. Colors are linear; gray is (R + G + B) / 3; means run over the pixels.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Side {
+    /// Mean number of samples of a pixel.
+    pub samples_per_pixel: f64,
+    /// Samples of the pixel that has fewest.
+    pub fewest_samples: u32,
+    /// CPU time of the threads that sampled the whole film, in seconds.
+    pub cpu_seconds: f64,
+    /// Mean color.
+    pub mean_rgb: [f64; 3],
+    /// Mean over the pixels of the variance of the gray mean; none where no pixel has two samples.
+    pub variance_of_mean: Option<f64>,
+    /// Standard error of that, none with it.
+    pub variance_error: Option<f64>,
+    /// Relative standard error of the picture, as [`FilmStats::noise`](super::FilmStats::noise).
+    pub noise: Option<f64>,
+}
+
+/// What two films say about each other.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Comparison {
+    /// Figures of A and of B.
+    pub sides: [Side; 2],
+    /// How much faster B is than A; none while that is not known at all.
+    pub speed_up: Option<SpeedUp>,
+    /// Whether both show the same picture.
+    pub agreement: Agreement,
+}
+
+impl Comparison {
+    /// Compares the films of A and B, on which the threads spent so many seconds of CPU time, over
+    /// the pixels of `area`, or all that both have. Of an area the ratio of CPU times is that of
+    /// the films: what a part of the picture cost is not known apart.
+    ///
+    /// Works on the threads of the calling pool, with the same result for any number of them.
+    pub fn of(films: [&Film; 2], cpu_seconds: [f64; 2], area: Option<Area>) -> Self {
+        let area = area.unwrap_or(Area::of(films[0].size()));
+        let area = area.within(films[0].size()).within(films[1].size());
+        let blocks = area.blocks();
+        let tallies: Vec<[Tally; 2]> =
+            blocks.par_iter().map(|block| films.map(|film| Tally::of(film, block))).collect();
+        let whole = [0, 1]
+            .map(|side| tallies.iter().fold(Tally::default(), |sum, pair| sum.plus(&pair[side])));
+        let sides = [0, 1].map(|side| whole[side].side(cpu_seconds[side]));
+        let agreement = Agreement::new((&area, &whole), &blocks, &tallies, ALARM);
+        Self { sides, speed_up: SpeedUp::new(&sides[0], &sides[1]), agreement }
+    }
+
+    /// Which side is faster and by how much, as one would say it, with no more digits than are
+    /// known and without a full stop.
+    pub fn sentence(&self) -> String {
+        speed::sentence(&self.sides, self.speed_up.as_ref())
+    }
+}
+
+#[cfg(test)]
+mod tests;

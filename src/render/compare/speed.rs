@@ -1,0 +1,178 @@
+//! How much faster one setting is than another, and the sentence that says so.
+
+use super::Side;
+use crate::image::figures::rounded;
+
+/// Standard errors on either side of an estimate that hold the truth with 95 %.
+const CONFIDENCE: f64 = 1.96;
+
+/// What is not known of the ratio of two CPU times, as a share of it: the same work repeats to about
+/// this, also when both sides take turns.
+const TIMING_ERROR: f64 = 0.02;
+
+/// A ratio known no better than to this factor (95 %) is not said to be a tie: it is not known.
+const TOO_WIDE: f64 = 1.5;
+
+/// How much faster B reaches a given noise than A: the ratio of their variances times their CPU
+/// times, as variance falls with the inverse of time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpeedUp {
+    /// The time that A needs over that of B; below 1 where A is the faster.
+    pub ratio: f64,
+    /// Standard error of its logarithm, which is nearly that of the ratio relative to it.
+    pub log_error: f64,
+}
+
+impl SpeedUp {
+    /// The speed-up between two sides; none where one has no noise or no measured time.
+    ///
+    /// The error is that of the estimated variances, and of the clock.
+    pub(super) fn new(a: &Side, b: &Side) -> Option<Self> {
+        let cost = |side: &Side| {
+            let variance = side.variance_of_mean.filter(|&variance| variance > 0.0)?;
+            let relative_error = side.variance_error? / variance;
+            (side.cpu_seconds > 0.0).then_some((variance * side.cpu_seconds, relative_error))
+        };
+        let ((a, error_a), (b, error_b)) = (cost(a)?, cost(b)?);
+        let log_error = error_a.hypot(error_b).hypot(TIMING_ERROR);
+        let ratio = a / b;
+        (ratio > 0.0 && ratio.is_finite()).then_some(Self { ratio, log_error })
+    }
+
+    /// Standard error of the ratio.
+    pub fn standard_error(&self) -> f64 {
+        self.ratio * self.log_error
+    }
+
+    /// The interval that holds the true ratio with 95 %.
+    pub fn interval(&self) -> [f64; 2] {
+        let factor = self.factor();
+        [self.ratio / factor, self.ratio * factor]
+    }
+
+    /// Whether one side is faster beyond doubt, that is with 95 %.
+    pub fn is_clear(&self) -> bool {
+        let [low, high] = self.interval();
+        low > 1.0 || high < 1.0
+    }
+
+    /// By which factor the ends of the interval are off the ratio.
+    fn factor(&self) -> f64 {
+        (CONFIDENCE * self.log_error).exp()
+    }
+}
+
+/// See [`Comparison::sentence`](super::Comparison::sentence).
+pub(super) fn sentence(sides: &[Side; 2], speed_up: Option<&SpeedUp>) -> String {
+    match speed_up {
+        Some(speed_up) if speed_up.is_clear() => {
+            let (winner, loser) = if speed_up.ratio > 1.0 { ("B", "A") } else { ("A", "B") };
+            let share = share_of_time(speed_up);
+            format!("{winner} needs {share} of {loser}'s time for the same noise")
+        }
+        Some(speed_up) if speed_up.factor() > TOO_WIDE => {
+            "It is too early to tell which of A and B is faster".to_owned()
+        }
+        Some(_) => "A and B are equally fast within what is known".to_owned(),
+        None => unknown(sides),
+    }
+}
+
+/// Why there is nothing to say.
+fn unknown(sides: &[Side; 2]) -> String {
+    let is_noiseless = |side: &Side| side.variance_of_mean == Some(0.0);
+    match [0, 1].map(|side| is_noiseless(&sides[side])) {
+        [true, true] => "Neither A nor B shows any noise",
+        [true, false] => "A shows no noise, so that times can't be compared",
+        [false, true] => "B shows no noise, so that times can't be compared",
+        [false, false] => "There are too few samples to compare A and B",
+    }
+    .to_owned()
+}
+
+/// The time of the faster side as a share of the other's.
+fn share_of_time(speed_up: &SpeedUp) -> String {
+    let factor = speed_up.ratio.max(1.0 / speed_up.ratio);
+    let spread = speed_up.factor();
+    if factor < 2.0 {
+        return percents(factor, spread);
+    }
+    if spread <= 1.1 {
+        format!("1/{}", rounded(factor, 2))
+    } else if spread <= 1.6 {
+        format!("about 1/{}", rounded(round_number(factor), 2))
+    } else {
+        let [low, high] = [factor / spread, factor * spread].map(round_number);
+        format!("between 1/{} and 1/{}", rounded(high, 2), rounded(low, 2))
+    }
+}
+
+/// A share of more than a half: 77 %, about 75 %, between 60 and 90 %.
+fn percents(factor: f64, spread: f64) -> String {
+    let share = 100.0 / factor;
+    let fives = |value: f64| 5.0 * (value / 5.0).round();
+    if spread <= 1.03 {
+        format!("{share:.0} %")
+    } else if spread <= 1.15 {
+        format!("about {:.0} %", fives(share).min(95.0))
+    } else {
+        // The other end is below 100 %, as the case is clear.
+        let (low, high) = (fives(share / spread), fives(share * spread).min(95.0));
+        format!("between {low:.0} and {high:.0} %")
+    }
+}
+
+/// The nearest of the numbers that one uses for rough figures.
+fn round_number(value: f64) -> f64 {
+    const STEPS: [f64; 10] = [1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0];
+    let decade = 10_f64.powf(value.log10().floor());
+    let distance = |candidate: &f64| (candidate / value).ln().abs();
+    let candidates = STEPS.into_iter().chain([10.0]).map(|step| step * decade);
+    candidates.min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sentence_of(ratio: f64, log_error: f64) -> String {
+        sentence(&[Side::default(); 2], Some(&SpeedUp { ratio, log_error }))
+    }
+
+    #[test]
+    fn sentences_round_to_what_is_known() {
+        let b = |share: &str| format!("B needs {share} of A's time for the same noise");
+        for (ratio, log_error, share) in [
+            (38.2, 0.02, "1/38"),
+            (3.84, 0.03, "1/3.8"),
+            (4.01, 0.03, "1/4"),
+            (1234.0, 0.04, "1/1200"),
+            (38.2, 0.15, "about 1/40"),
+            (14.0, 0.2, "about 1/15"),
+            (38.2, 0.4, "between 1/80 and 1/20"),
+            (1.3, 0.01, "77 %"),
+            (1.3, 0.05, "about 75 %"),
+            (1.5, 0.1, "between 55 and 80 %"),
+            (1.02, 0.008, "98 %"),
+        ] {
+            assert_eq!(sentence_of(ratio, log_error), b(share), "{ratio} with {log_error}");
+        }
+        let expected = "A needs 1/38 of B's time for the same noise";
+        assert_eq!(sentence_of(1.0 / 38.2, 0.02), expected);
+        assert_eq!(sentence_of(1.05, 0.05), "A and B are equally fast within what is known");
+        assert!(sentence_of(1.3, 0.3).starts_with("It is too early"));
+    }
+
+    #[test]
+    fn without_noise_or_samples_there_is_nothing_to_compare() {
+        let silent = Side { variance_of_mean: Some(0.0), cpu_seconds: 1.0, ..Side::default() };
+        let noisy = Side { variance_of_mean: Some(1.0), variance_error: Some(0.1), ..silent };
+        assert_eq!(SpeedUp::new(&silent, &noisy), None);
+        assert!(sentence(&[silent, noisy], None).starts_with("A shows no noise"));
+        assert!(sentence(&[noisy, silent], None).starts_with("B shows no noise"));
+        assert!(sentence(&[silent; 2], None).starts_with("Neither"));
+        assert!(sentence(&[Side::default(); 2], None).contains("too few samples"));
+        let timeless = Side { cpu_seconds: 0.0, ..noisy };
+        assert_eq!(SpeedUp::new(&timeless, &noisy), None);
+    }
+}

@@ -1,0 +1,103 @@
+//! Sums over the pixels of one film.
+
+use super::{Area, Side};
+use crate::render::estimate::{PixelEstimate, gray};
+use crate::render::film::Film;
+
+/// What is summed over some pixels of one side.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Tally {
+    pixels: u64,
+    samples: u64,
+    pub fewest_samples: u32,
+    sampled: u64,
+    rgb: [f64; 3],
+    /// Pixels whose variance is known; what follows runs over them.
+    pub measured: u64,
+    pub gray: f64,
+    pub variance: f64,
+    /// Variance of `variance`.
+    pub uncertainty: f64,
+    /// The largest variance of a pixel.
+    pub largest_variance: f64,
+}
+
+impl Default for Tally {
+    fn default() -> Self {
+        Self {
+            pixels: 0,
+            samples: 0,
+            fewest_samples: u32::MAX,
+            sampled: 0,
+            rgb: [0.0; 3],
+            measured: 0,
+            gray: 0.0,
+            variance: 0.0,
+            uncertainty: 0.0,
+            largest_variance: 0.0,
+        }
+    }
+}
+
+impl Tally {
+    /// Over the pixels of `area`, all of which are on the film.
+    pub fn of(film: &Film, area: &Area) -> Self {
+        let mut tally = Self::default();
+        for pixel in area.iter() {
+            let samples = film.samples(pixel);
+            tally.pixels += 1;
+            tally.samples += u64::from(samples);
+            tally.fewest_samples = tally.fewest_samples.min(samples);
+            if let Some(estimate) = PixelEstimate::of(film, pixel) {
+                tally.add(&estimate);
+            }
+        }
+        tally
+    }
+
+    fn add(&mut self, pixel: &PixelEstimate<'_>) {
+        let mean = pixel.mean();
+        self.sampled += 1;
+        (0..3).for_each(|c| self.rgb[c] += mean[c]);
+        let variance = pixel.gray_variance().zip(pixel.gray_variance_uncertainty());
+        if let Some((variance, uncertainty)) = variance {
+            self.measured += 1;
+            self.gray += gray(mean);
+            self.variance += variance;
+            self.uncertainty += uncertainty;
+            self.largest_variance = self.largest_variance.max(variance);
+        }
+    }
+
+    #[must_use]
+    pub fn plus(&self, other: &Self) -> Self {
+        Self {
+            pixels: self.pixels + other.pixels,
+            samples: self.samples + other.samples,
+            fewest_samples: self.fewest_samples.min(other.fewest_samples),
+            sampled: self.sampled + other.sampled,
+            rgb: [0, 1, 2].map(|c| self.rgb[c] + other.rgb[c]),
+            measured: self.measured + other.measured,
+            gray: self.gray + other.gray,
+            variance: self.variance + other.variance,
+            uncertainty: self.uncertainty + other.uncertainty,
+            largest_variance: self.largest_variance.max(other.largest_variance),
+        }
+    }
+
+    /// The figures that come of it.
+    pub fn side(&self, cpu_seconds: f64) -> Side {
+        let mean_of = |sum: f64, count: u64| (count > 0).then(|| sum / count as f64);
+        let variance = mean_of(self.variance, self.measured);
+        let mean = mean_of(self.gray, self.measured).filter(|&mean| mean > 0.0);
+        Side {
+            samples_per_pixel: mean_of(self.samples as f64, self.pixels).unwrap_or(0.0),
+            fewest_samples: if self.pixels > 0 { self.fewest_samples } else { 0 },
+            cpu_seconds,
+            mean_rgb: self.rgb.map(|sum| mean_of(sum, self.sampled).unwrap_or(0.0)),
+            variance_of_mean: variance,
+            variance_error: mean_of(self.uncertainty.max(0.0).sqrt(), self.measured),
+            noise: variance.zip(mean).map(|(variance, mean)| variance.sqrt() / mean),
+        }
+    }
+}
