@@ -321,6 +321,154 @@ fn a_full_standard_error_stops_nothing() {
     assert_eq!(status(&["render", "absent.toml", "-o", "out.npy"]), Some(1));
 }
 
+/// The files of `compare -o`.
+const COMPARED: [&str; 8] = [
+    "a.exr",
+    "b.exr",
+    "difference.png",
+    "noise_a.png",
+    "noise_b.png",
+    "noise_over_time.png",
+    "table.json",
+    "table.txt",
+];
+
+fn files_of(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).unwrap();
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort_unstable();
+    names
+}
+
+#[test]
+fn compare_writes_the_table_the_snapshots_and_the_pictures() {
+    let place = Place::new();
+    let text = place.succeed(&["compare", "scene.toml", "--spp", "16", "-o", "out"]);
+    let folder = place.path("out");
+    assert_eq!(files_of(&folder), COMPARED);
+    assert_eq!(std::fs::read_to_string(folder.join("table.txt")).unwrap(), text);
+    for name in COMPARED.iter().filter(|name| name.ends_with(".png")) {
+        assert!(image::open(folder.join(name)).unwrap().width() >= 600, "{name}");
+    }
+
+    let table = json(&folder.join("table.json"));
+    let sentence = table["sentence"].as_str().unwrap();
+    assert!(text.contains(sentence), "{sentence}");
+    assert_eq!((&table["width"], &table["seed"]), (&40.into(), &3.into()));
+    assert_eq!(table["agreement"]["verdict"], "agree", "{text}");
+    assert_eq!(table["interrupted"], false);
+    let mut products = Vec::new();
+    for (side, choice) in [("a", "baseline"), ("b", "full")] {
+        let row = &table[side];
+        assert_eq!((&row["choice"], &row["spp"]), (&choice.into(), &16.0.into()));
+        assert_eq!(row["paths"], 40 * 30 * 16);
+        let number = |key: &str| row[key].as_f64().unwrap();
+        products.push(number("gray_variance_of_mean") * number("cpu_seconds_render"));
+        let mean = row["mean_rgb"].as_array().unwrap().iter().map(|v| v.as_f64().unwrap());
+        let noise = number("gray_variance_of_mean").sqrt() / (mean.sum::<f64>() / 3.0);
+        assert!((noise / number("noise") - 1.0).abs() < 1e-6);
+        let last = row["noise_over_time"].as_array().unwrap().last().unwrap();
+        assert_eq!(last[0], row["cpu_seconds_render"]);
+        assert!((last[1].as_f64().unwrap() / number("noise") - 1.0).abs() < 1e-9);
+    }
+    let ratio = table["speed_up"]["ratio"].as_f64().unwrap();
+    assert!((ratio * products[1] / products[0] - 1.0).abs() < 1e-9);
+    let header = read_info(&folder.join("a.exr")).unwrap().header.unwrap();
+    assert!(header.strategy.contains("majorant_boost = false"), "{}", header.strategy);
+}
+
+/// The snapshots are those that `render` writes, can be continued, and don't depend on the number
+/// of threads.
+#[test]
+fn compared_pictures_are_those_that_render_makes() {
+    let place = Place::new();
+    let film = |name: &str| read_snapshot(&place.path(name)).unwrap().film;
+    for threads in ["1", "3"] {
+        place.succeed(&[
+            "compare",
+            "scene.toml",
+            "--a",
+            "nee=false,advanced.boost_mode=clamped",
+            "--spp",
+            "5",
+            "--threads",
+            threads,
+            "-o",
+            threads,
+        ]);
+    }
+    let render = ["render", "scene.toml", "--spp", "5"];
+    place.succeed(&[&render[..], &["-o", "full.exr"]].concat());
+    let set = ["--set", "strategy.nee=false", "--set", "strategy.advanced.boost_mode=clamped"];
+    place.succeed(&[&render[..], &set, &["-o", "other.exr"]].concat());
+    for threads in ["1", "3"] {
+        assert_eq!(film(&format!("{threads}/a.exr")), film("other.exr"));
+        assert_eq!(film(&format!("{threads}/b.exr")), film("full.exr"));
+    }
+    let more = ["render", "scene.toml", "--spp", "7", "--resume", "1/b.exr", "-o", "more.exr"];
+    place.succeed(&more);
+    assert_eq!(film("more.exr").sample_range(), (7, 7));
+}
+
+#[test]
+fn without_a_folder_compare_prints_and_writes_nothing() {
+    let place = Place::new();
+    let (code, text, stderr) =
+        place.run(&["compare", "scene.toml", "--time", "0.2", "--b", "integrator=march"]);
+    assert_eq!(code, 0, "{stderr}");
+    assert!(text.contains("CPU seconds") && text.contains("integrator=march"), "{text}");
+    assert!(stderr.contains("--b") && stderr.contains("biased"), "{stderr}");
+    assert_eq!(files_of(place.0.path()), ["scene.toml"]);
+    let (_, _, stderr) = place.run(&["compare", "scene.toml", "--b", "volume.0.albedo=0.3"]);
+    assert!(stderr.contains("--set volume.0.albedo=0.3"), "{stderr}");
+    let (_, _, stderr) = place.run(&["compare", "scene.toml", "--b", "baseline,nea=true"]);
+    assert!(stderr.contains("--b: strategy.nea") && stderr.contains("nee"), "{stderr}");
+}
+
+/// No side gets less CPU time than it was promised.
+#[test]
+fn compare_gives_each_side_its_time() {
+    let place = Place::new();
+    place.succeed(&["compare", "scene.toml", "--time", "0.5", "-o", "out"]);
+    let table = json(&place.path("out/table.json"));
+    let seconds = |side: &str| table[side]["cpu_seconds_render"].as_f64().unwrap();
+    assert!(seconds("a") >= 0.5 && seconds("b") >= 0.5);
+}
+
+/// Ctrl-C while both sides are rendered. A machine with much else to do is given more time to get
+/// there.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_comparison_writes_what_there_is() {
+    use rustix::process::{Pid, Signal, kill_process};
+    use std::process::{Command, Stdio};
+    use std::time::Duration;
+
+    let place = Place::new();
+    let film = || read_snapshot(&place.path("out/a.exr")).ok().map(|snapshot| snapshot.film);
+    for patience in [700, 3000, 12_000, 48_000] {
+        let child = Command::new(env!("CARGO_BIN_EXE_flambeau"))
+            .current_dir(place.0.path())
+            .args(["compare", "scene.toml", "--spp", "1000000", "-o", "out"])
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        std::thread::sleep(Duration::from_millis(patience));
+        kill_process(Pid::from_child(&child), Signal::INT).unwrap();
+        let output = child.wait_with_output().unwrap();
+        if film().is_some_and(|film| film.totals.paths > 0) {
+            assert_eq!(output.status.code(), Some(130));
+            assert!(String::from_utf8_lossy(&output.stdout).contains("interrupted"));
+            assert_eq!(files_of(&place.path("out")), COMPARED);
+            assert_eq!(json(&place.path("out/table.json"))["interrupted"], true);
+            return;
+        }
+    }
+    panic!("nothing was rendered");
+}
+
 /// Ctrl-C in the middle: what there is is written, and going on from it misses nothing.
 #[cfg(unix)]
 #[test]
@@ -386,6 +534,9 @@ fn exit_codes_tell_failure_from_wrong_usage() {
         &["render", "broken.toml", "-o", "x.exr"],
         &["render", "scene.toml", "-o", "no/such/folder/x.exr"],
         &["render", "scene.toml", "-o", "x.exr", "--resume", "scene.toml"],
+        &["compare", "absent.toml", "--spp", "1"],
+        &["compare", "scene.toml", "--spp", "1", "-o", "no/such/folder"],
+        &["compare", "scene.toml", "--spp", "1", "-o", "scene.toml"],
         &["info", "absent.vdb"],
         &["info", "broken.toml"],
     ];
@@ -407,6 +558,11 @@ fn exit_codes_tell_failure_from_wrong_usage() {
         &["render", "scene.toml", "-o", "x.exr", "--set", "nonsense"],
         &["replay", "scene.toml", "--pixel", "40,0", "--sample", "0"],
         &["replay", "scene.toml", "--pixel", "1", "--sample", "0"],
+        &["compare", "scene.toml", "--a", "ful"],
+        &["compare", "scene.toml", "--a", "nea=true"],
+        &["compare", "scene.toml", "--b", "nee=maybe"],
+        &["compare", "scene.toml", "--b", "film.seed=3"],
+        &["compare", "scene.toml", "--time", "0"],
         &["keys", "--xml"],
         &["--nonsense"],
     ];

@@ -1,7 +1,9 @@
 //! The command line: one file a command. `main` parses, runs and reports.
 
+mod compare;
 pub mod cpu_time;
 mod info;
+mod interrupt;
 mod keys;
 mod outputs;
 mod render;
@@ -31,6 +33,8 @@ struct Arguments {
 enum Command {
     /// Render without a window.
     Render(Box<render::Arguments>),
+    /// Hold two sampling strategies against each other: noise, cost and the ratio between them.
+    Compare(Box<compare::Arguments>),
     /// Print every key of the scene file: type, unit, default, range, help.
     Keys(keys::Arguments),
     /// Say what is in a volume, a snapshot or a scene.
@@ -85,6 +89,7 @@ pub fn run() -> ExitCode {
     };
     let result = match arguments.command {
         Some(Command::Render(arguments)) => render::run(&arguments),
+        Some(Command::Compare(arguments)) => compare::run(&arguments),
         Some(Command::Keys(arguments)) => keys::run(&arguments),
         Some(Command::Info(arguments)) => info::run(&arguments),
         Some(Command::Replay(arguments)) => replay::run(&arguments),

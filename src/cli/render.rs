@@ -3,13 +3,14 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use clap::Args;
 use glam::UVec2;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::cpu_time::process_seconds;
+use super::interrupt::listen_for_interrupt;
 use super::outputs::{Output, check_folder, write_all};
 use super::scene_source::SceneArguments;
 use super::stats::{Spent, Stats};
@@ -25,8 +26,6 @@ use crate::transport::Frame;
 
 /// Samples a pixel where neither the command line nor the scene says how many.
 const DEFAULT_SPP: u32 = 64;
-/// After an interrupt, another one this much later ends the program without waiting for files.
-const IMPATIENCE: Duration = Duration::from_secs(1);
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -53,7 +52,8 @@ pub struct Arguments {
     resume: Option<PathBuf>,
 }
 
-fn parse_seconds(text: &str) -> Result<f64, String> {
+/// A number of seconds above 0.
+pub(super) fn parse_seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(seconds) if seconds > 0.0 && seconds.is_finite() => Ok(seconds),
         _ => Err("expected a number of seconds above 0".to_owned()),
@@ -210,23 +210,6 @@ fn spent_before(header: &Header) -> Spent {
     }
 }
 
-/// A flag that Ctrl-C sets, and so does a polite request to end, as render farms and terminals
-/// that close send it; another one later ends the program at once.
-fn listen_for_interrupt() -> Result<Arc<AtomicBool>> {
-    let interrupt = Arc::new(AtomicBool::new(false));
-    let flag = Arc::clone(&interrupt);
-    let mut first = None;
-    ctrlc::set_handler(move || {
-        flag.store(true, Ordering::Relaxed);
-        // `timeout` sends its signal twice in a row; only a later one means that writing shall stop.
-        if first.get_or_insert_with(Instant::now).elapsed() > IMPATIENCE {
-            std::process::exit(Exit::Interrupted as i32);
-        }
-    })
-    .map_err(|e| Error::invalid("", "Ctrl-C", format!("cannot listen for it: {e}")))?;
-    Ok(interrupt)
-}
-
 /// Renders with a progress bar on standard error, if that is a terminal.
 fn show_progress(job: Job, interrupt: &AtomicBool) -> Result<Headless> {
     const STEPS: u64 = 1000;
@@ -258,23 +241,13 @@ fn finish(
     spent: Spent,
 ) -> Result<Exit, Refusal> {
     let film = &render.film;
-    let strategy = settings.strategy;
-    let header = Header {
-        scene: scene::to_toml(settings, None)?,
-        strategy: toml::to_string(&strategy)
-            .map_err(|e| Error::invalid("", "strategy", e.to_string()))?,
-        seed: settings.film.seed,
-        version: env!("CARGO_PKG_VERSION").to_owned(),
-        wall_seconds: spent.wall,
-        cpu_seconds_setup: spent.cpu_setup,
-        cpu_seconds_render: spent.cpu_render,
-        files,
-    };
+    let header = header(settings, files, spent)?;
     let figures = render.pool.install(|| FilmStats::of(film));
     let written = render.pool.install(|| write_all(&arguments.output, film, &header));
     if let Some(path) = &arguments.stats {
         let threads = render.pool.threads();
-        Stats::new(film, &figures, spent, settings.film.seed, threads, strategy).write(path)?;
+        Stats::new(film, &figures, spent, settings.film.seed, threads, settings.strategy)
+            .write(path)?;
     }
     written?;
     report(arguments, render, &figures);
@@ -282,6 +255,21 @@ fn finish(
         return Err(Error::invalid("", "", failed(arguments, settings, failure)).into());
     }
     Ok(if render.interrupted { Exit::Interrupted } else { Exit::Done })
+}
+
+/// What a snapshot says about itself.
+pub(super) fn header(settings: &Settings, files: Vec<Fingerprint>, spent: Spent) -> Result<Header> {
+    Ok(Header {
+        scene: scene::to_toml(settings, None)?,
+        strategy: toml::to_string(&settings.strategy)
+            .map_err(|e| Error::invalid("", "strategy", e.to_string()))?,
+        seed: settings.film.seed,
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        wall_seconds: spent.wall,
+        cpu_seconds_setup: spent.cpu_setup,
+        cpu_seconds_render: spent.cpu_render,
+        files,
+    })
 }
 
 /// What failed, and the command that follows the very path.

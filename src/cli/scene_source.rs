@@ -48,6 +48,11 @@ impl SceneArguments {
         Ok(settings)
     }
 
+    /// What the scene is called on the command line.
+    pub fn name(&self) -> &str {
+        &self.scene
+    }
+
     /// The arguments that lead another command to these `settings`, ready for a shell.
     pub fn in_words(&self, settings: &Settings) -> String {
         let mut words = vec![quoted(&self.scene)];
@@ -62,7 +67,7 @@ impl SceneArguments {
 }
 
 /// A word as a shell takes it literally.
-fn quoted(word: &str) -> String {
+pub(super) fn quoted(word: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./:,=+@%".contains(c);
     if !word.is_empty() && word.chars().all(is_plain) {
         return word.to_owned();

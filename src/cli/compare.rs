@@ -1,0 +1,266 @@
+//! `flambeau compare`: two sampling strategies on one scene, at equal cost.
+
+mod pictures;
+mod sides;
+mod table;
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
+
+use clap::Args;
+use glam::UVec2;
+use indicatif::{ProgressBar, ProgressStyle};
+
+use super::cpu_time::process_seconds;
+use super::interrupt::listen_for_interrupt;
+use super::outputs::check_folder;
+use super::render::{header, parse_seconds};
+use super::scene_source::SceneArguments;
+use super::stats::Spent;
+use super::{Exit, Refusal, print, warn};
+use crate::error::{Error, Result};
+use crate::image::exr::Header;
+use crate::render::Failure;
+use crate::render::compare::Comparison;
+use crate::render::side_by_side::{PairJob, RenderedPair, render_side_by_side};
+use crate::render::turns::Account;
+use crate::scene::{self, Settings, VolumeCache};
+use crate::transport::{Frame, PixelSampler, Scene};
+use sides::Choice;
+use table::{SideRow, Table};
+
+/// CPU seconds of each side where the command line says nothing.
+const DEFAULT_SECONDS: f64 = 10.0;
+
+#[derive(Debug, Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// Strategy of side A: a preset, keys of the strategy such as nee=false, or both, separated by
+    /// commas. It is laid over the scene and over --preset and --set, which both sides share.
+    #[arg(long, value_name = "PRESET|KEY=VALUE,..", default_value = "baseline")]
+    a: Choice,
+    /// Strategy of side B.
+    #[arg(long, value_name = "PRESET|KEY=VALUE,..", default_value = "full")]
+    b: Choice,
+    /// Seconds of CPU time that the sampling threads spend on each side; 10 if neither this nor
+    /// --spp is given.
+    #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
+    time: Option<f64>,
+    /// Samples per pixel of each side.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
+    spp: Option<u32>,
+    /// Number of threads; one a core if absent.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Folder for the table, both snapshots, the maps and the plot; made if it is not there.
+    #[arg(short, long = "output", value_name = "DIR")]
+    output: Option<PathBuf>,
+}
+
+/// One side before it is rendered.
+struct Prepared {
+    settings: Settings,
+    sampler: Arc<dyn PixelSampler>,
+    /// CPU seconds of preparing it, of placing probes above all.
+    setup: f64,
+}
+
+pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
+    let start = Instant::now();
+    let interrupt = listen_for_interrupt()?;
+    let go_on = |_: f32| !interrupt.load(Ordering::Relaxed);
+    let cache = VolumeCache::default();
+    let shared = arguments.scene.settings(&cache, &go_on)?;
+    let settings = settings_of_sides(arguments, &shared)?;
+    if let Some(folder) = &arguments.output {
+        make_folder(folder)?;
+    }
+    let files = match arguments.output.is_some() {
+        true => scene::fingerprints(&shared)?,
+        false => Vec::new(),
+    };
+    let scene = scene::build(&shared, &cache, &go_on)?;
+    let cpu_setup = process_seconds();
+    let sides = settings.map(|settings| prepare(&scene, settings));
+    let wall_setup = start.elapsed().as_secs_f64();
+
+    let pair = show_progress(job(arguments, &sides), &interrupt)?;
+    let comparison = compared(&pair);
+    let spent = [0, 1].map(|side| Spent {
+        wall: wall_setup + pair.sides[side].seconds,
+        cpu_setup: cpu_setup + sides[side].setup,
+        cpu_render: pair.sides[side].cpu_seconds,
+    });
+    let table = table(arguments, &sides, &pair, &comparison, spent);
+    print(&table.text())?;
+    if let Some(folder) = &arguments.output {
+        let headers = [
+            header(&sides[0].settings, files.clone(), spent[0])?,
+            header(&sides[1].settings, files, spent[1])?,
+        ];
+        write(folder, arguments, &pair, &headers, &table)?;
+    }
+    conclude(arguments, &sides, &pair)
+}
+
+/// Writes the table and the pictures; what fails does not keep the rest from being written.
+fn write(
+    folder: &Path,
+    arguments: &Arguments,
+    pair: &RenderedPair,
+    headers: &[Header; 2],
+    table: &Table,
+) -> Result<()> {
+    let names = [format!("A {}", arguments.a.text()), format!("B {}", arguments.b.text())];
+    let words = (&names, table.sentence.as_str());
+    let written = table.write(folder);
+    pair.pool.install(|| pictures::write_all(folder, pair, headers, words)).and(written)
+}
+
+/// The settings of A and of B: those they share, each with its own strategy.
+fn settings_of_sides(arguments: &Arguments, shared: &Settings) -> Result<[Settings; 2], Refusal> {
+    let settings = |choice: &Choice, option: &str| {
+        let mut settings = choice.over(shared, option).map_err(Refusal::usage)?;
+        settings.film.spp = arguments.spp.unwrap_or(0);
+        if settings.strategy.is_biased() {
+            warn(&format!(
+                "{option}: ray marching is on (strategy.integrator): its picture is biased"
+            ));
+        }
+        Ok::<_, Refusal>(settings)
+    };
+    Ok([settings(&arguments.a, "--a")?, settings(&arguments.b, "--b")?])
+}
+
+/// Makes the folder of the results, before anything is rendered in vain.
+fn make_folder(folder: &Path) -> Result<()> {
+    check_folder(folder)?;
+    match folder.is_dir() {
+        true => Ok(()),
+        false => std::fs::create_dir(folder).map_err(|e| Error::io(folder, e)),
+    }
+}
+
+/// Frames the scene with the strategy of one side. Its pilot, if it has one, runs here, so that it
+/// counts as preparation.
+fn prepare(scene: &Scene, settings: Settings) -> Prepared {
+    let before = process_seconds();
+    let scene = Scene { strategy: settings.strategy, ..scene.clone() };
+    let size = UVec2::from_array(settings.film.size);
+    let frame = Frame::new(Arc::new(scene), size, settings.film.seed);
+    frame.guided_flights();
+    let setup = process_seconds() - before;
+    Prepared { settings, sampler: Arc::new(frame), setup }
+}
+
+fn job(arguments: &Arguments, sides: &[Prepared; 2]) -> PairJob {
+    let cpu_seconds = match (arguments.time, arguments.spp) {
+        (None, None) => Some(DEFAULT_SECONDS),
+        (time, _) => time,
+    };
+    PairJob {
+        samplers: [sides[0].sampler.clone(), sides[1].sampler.clone()],
+        size: UVec2::from_array(sides[0].settings.film.size),
+        spp: arguments.spp.unwrap_or(0),
+        cpu_seconds,
+        threads: arguments.threads.map(usize::from),
+    }
+}
+
+/// Renders both with a progress bar on standard error, if that is a terminal.
+fn show_progress(job: PairJob, interrupt: &AtomicBool) -> Result<RenderedPair> {
+    const STEPS: u64 = 1000;
+    let (spp, cpu_seconds) = (job.spp, job.cpu_seconds);
+    let bar = ProgressBar::new(STEPS);
+    let style = ProgressStyle::with_template("{bar:40} {msg} · {elapsed} · {eta} left");
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    let part = |account: &Account| {
+        let by_samples = if spp > 0 { account.samples / f64::from(spp) } else { 0.0 };
+        let by_time = cpu_seconds.map_or(0.0, |end| account.cpu_seconds / end);
+        by_samples.max(by_time).min(1.0)
+    };
+    let result = render_side_by_side(job, interrupt, &mut |[a, b]| {
+        bar.set_position((0.5 * (part(a) + part(b)) * STEPS as f64) as u64);
+        bar.set_message(format!("A {:.1} spp · B {:.1} spp", a.samples, b.samples));
+    });
+    bar.finish_and_clear();
+    result
+}
+
+fn compared(pair: &RenderedPair) -> Comparison {
+    let films = [&pair.sides[0].film, &pair.sides[1].film];
+    let cpu_seconds = [pair.sides[0].cpu_seconds, pair.sides[1].cpu_seconds];
+    pair.pool.install(|| Comparison::of(films, cpu_seconds, None))
+}
+
+fn table(
+    arguments: &Arguments,
+    sides: &[Prepared; 2],
+    pair: &RenderedPair,
+    comparison: &Comparison,
+    spent: [Spent; 2],
+) -> Table {
+    let choices = [&arguments.a, &arguments.b];
+    let row = |side: usize| {
+        SideRow::new(
+            (["A", "B"][side], choices[side].text()),
+            sides[side].settings.strategy,
+            &comparison.sides[side],
+            &pair.sides[side],
+            spent[side],
+        )
+    };
+    let film = &sides[0].settings.film;
+    Table {
+        scene: arguments.scene.name().to_owned(),
+        width: film.size[0],
+        height: film.size[1],
+        seed: film.seed,
+        threads: pair.pool.threads(),
+        version: env!("CARGO_PKG_VERSION"),
+        interrupted: pair.interrupted,
+        a: row(0),
+        b: row(1),
+        speed_up: comparison.speed_up.as_ref().map(Into::into),
+        sentence: comparison.sentence(),
+        agreement: (&comparison.agreement).into(),
+    }
+}
+
+/// Says what went wrong while rendering, and how it ended.
+fn conclude(
+    arguments: &Arguments,
+    sides: &[Prepared; 2],
+    pair: &RenderedPair,
+) -> Result<Exit, Refusal> {
+    let choices = [&arguments.a, &arguments.b];
+    for (side, name) in ["A", "B"].into_iter().enumerate() {
+        let totals = pair.sides[side].film.totals;
+        if totals.non_finite > 0 {
+            let count = totals.non_finite;
+            warn(&format!("{name}: {count} samples were not finite and count as black"));
+        }
+        if totals.guard_hits > 0 {
+            warn(&format!("{name}: {} paths were cut by the guard", totals.guard_hits));
+        }
+        if let Some(failure) = &pair.sides[side].failure {
+            let scene = arguments.scene.in_words(&sides[side].settings);
+            let what = failed(name, failure, &format!("{scene}{}", choices[side].in_words()));
+            return Err(Error::invalid("", "", what).into());
+        }
+    }
+    Ok(if pair.interrupted { Exit::Interrupted } else { Exit::Done })
+}
+
+/// What failed, and the command that follows the very path.
+fn failed(name: &str, failure: &Failure, scene: &str) -> String {
+    match failure.replay_options() {
+        Some(path) => {
+            format!("{name}: {failure} (`flambeau replay {scene} {path}` follows that path)")
+        }
+        None => format!("{name}: {failure}"),
+    }
+}
