@@ -131,75 +131,12 @@ fn writes_snapshot(arguments: &Arguments) -> bool {
 fn resume(path: &Path, settings: &Settings, files: &[Fingerprint]) -> Result<Snapshot> {
     let snapshot = read_snapshot(path)?;
     let name = path.display().to_string();
-    let text = &snapshot.header.scene;
-    let theirs = scene::parse(text, &name, Path::new("/"), &Default::default())?;
-    if let Some(difference) = difference(&theirs, settings)? {
-        let reason = format!(
-            "the snapshot was rendered with other settings than this scene: {difference}. Render \
-             anew, or give the settings it has"
-        );
-        return Err(Error::invalid(name, "", reason));
+    let kinship = scene::kinship(&snapshot.header, &name, settings, files)?;
+    if let Some(scene::Obstacle { what, mend }) = kinship.obstacle {
+        return Err(Error::invalid(name, "", format!("{what}. {mend}")));
     }
-    check_files(&name, &snapshot.header.files, files)?;
-    if snapshot.header.version != env!("CARGO_PKG_VERSION") {
-        warn(&format!(
-            "{name} was begun with version {}; its samples and those of this version may differ",
-            snapshot.header.version
-        ));
-    }
+    kinship.doubts.iter().for_each(|doubt| warn(doubt));
     Ok(snapshot)
-}
-
-/// Refuses files that have changed since the snapshot `name` was rendered from them.
-fn check_files(name: &str, theirs: &[Fingerprint], ours: &[Fingerprint]) -> Result<()> {
-    for file in ours {
-        let Some(then) = theirs.iter().find(|then| then.name == file.name) else {
-            warn(&format!(
-                "{name} does not say what {} held when it was rendered; if that has changed since, \
-                 two pictures are being mixed",
-                file.name
-            ));
-            continue;
-        };
-        if then != file {
-            let change = match then.bytes == file.bytes {
-                true => "has other content".to_owned(),
-                false => format!("had {} bytes and now has {}", then.bytes, file.bytes),
-            };
-            let reason = format!(
-                "{} {change} since the snapshot was rendered, and going on would mix two pictures. \
-                 Render anew, or put the old file back",
-                file.name
-            );
-            return Err(Error::invalid(name, "", reason));
-        }
-    }
-    Ok(())
-}
-
-/// The first line in which two settings differ, the number of samples apart.
-fn difference(theirs: &Settings, ours: &Settings) -> Result<Option<String>> {
-    let text = |settings: &Settings| {
-        let mut settings = settings.clone();
-        settings.film.spp = 0;
-        scene::to_toml(&settings, None)
-    };
-    let (theirs, ours) = (text(theirs)?, text(ours)?);
-    if theirs == ours {
-        return Ok(None);
-    }
-    let mut section = "";
-    let mut lines = std::iter::zip(theirs.lines(), ours.lines());
-    let different = lines.find(|(theirs, ours)| {
-        if theirs == ours && theirs.starts_with('[') {
-            section = theirs;
-        }
-        theirs != ours
-    });
-    Ok(Some(match different {
-        Some((theirs, ours)) => format!("{section} {theirs:?} there, {ours:?} here"),
-        None => "one has more volumes, lights or surfaces than the other".to_owned(),
-    }))
 }
 
 fn spent_before(header: &Header) -> Spent {
