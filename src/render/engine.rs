@@ -55,6 +55,11 @@ impl Engine {
         (self.sampler, self.seconds, self.cpu_seconds) = (sampler, 0.0, 0.0);
     }
 
+    /// Goes on with another sampler of the same picture.
+    pub fn go_on_with(&mut self, sampler: Arc<dyn PixelSampler>) {
+        self.sampler = sampler;
+    }
+
     /// Does the next piece of work, unless `stop` says so earlier.
     pub fn step(&mut self, pool: &Pool, paused: bool, stop: &(dyn Fn() -> bool + Sync)) -> Step {
         let work = match self.schedule.next(self.seconds, paused) {

@@ -27,7 +27,7 @@ pub use film::Film;
 pub use headless::{Headless, Job, render_headless};
 pub use pool::Failure;
 pub use publish::{Picture, RenderStats, StepMap};
-pub use session::{Request, Session};
+pub use session::{Request, Resume, Session};
 
 #[cfg(test)]
 pub(crate) mod synthetic;

@@ -27,12 +27,22 @@ pub struct Request {
     pub spp: u32,
     /// The caller's number, which the pictures carry.
     pub generation: u64,
-    /// A film to go on from, of the same size.
-    pub resume: Option<Film>,
+    /// What to go on from, a film of the same size. It waits for a better sampler that is in the
+    /// making, so that the samples of two never mix.
+    pub resume: Option<Resume>,
     /// Whether a better sampler of the same picture is in the making, which
     /// [`Session::improve`] will bring. Until then the render is not finished, whatever its limit,
     /// and a snapshot waits, unless it is paused.
     pub provisional: bool,
+}
+
+/// A render to go on from.
+#[derive(Debug)]
+pub struct Resume {
+    /// The samples it has.
+    pub film: Film,
+    /// Seconds of rendering that they took.
+    pub seconds: f64,
 }
 
 /// A progressive render in the background. Dropping it ends it within one sample a thread.
@@ -111,7 +121,8 @@ impl Session {
     /// Brings the provisional request of that generation the sampler it waits for, or says that
     /// none will come; in vain if it is no longer the latest. The render starts over with it, just
     /// as if it had begun so, and the picture of before stays until the new one has as many paths:
-    /// it neither goes blank nor gets coarser. A paused render starts over when it is resumed.
+    /// it neither goes blank nor gets coarser. A paused render starts over when it is resumed. One
+    /// that goes on from a film has waited for the sampler and goes on with it.
     pub fn improve(&self, generation: u64, sampler: Option<Arc<dyn PixelSampler>>) {
         self.shared.post(|mail| {
             mail.improvement = Some(Improvement { generation, sampler });

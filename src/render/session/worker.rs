@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use glam::UVec2;
 
-use super::{Improvement, Mail, Request, Shared, lock};
+use super::{Improvement, Mail, Request, Resume, Shared, lock};
 use crate::error::Result;
 use crate::render::engine::{Engine, Step};
 use crate::render::film::Film;
@@ -49,6 +49,8 @@ struct Active {
     awaits: Awaits,
     /// Paths of the picture shown when it started over, without which it shows none.
     held_below: u64,
+    /// Seconds that the film took which it goes on from, if it does.
+    resumed_at: Option<f64>,
 }
 
 /// How a request stands that may be improved.
@@ -60,7 +62,7 @@ enum Awaits {
 }
 
 impl Active {
-    fn new(engine: Engine, generation: u64, provisional: bool) -> Self {
+    fn new(engine: Engine, generation: u64, provisional: bool, resumed_at: Option<f64>) -> Self {
         Self {
             engine,
             generation,
@@ -69,12 +71,18 @@ impl Active {
             shown_final: false,
             awaits: if provisional { Awaits::Sampler } else { Awaits::Nothing },
             held_below: 0,
+            resumed_at,
         }
     }
 
     /// Whether what it samples will not change any more.
     fn is_settled(&self) -> bool {
         matches!(self.awaits, Awaits::Nothing)
+    }
+
+    /// Whether it goes on from a film and waits for the sampler to do so with.
+    fn holds(&self) -> bool {
+        self.resumed_at.is_some() && !self.is_settled()
     }
 
     /// Whether there is a picture that does not fall behind the one shown before it started over.
@@ -85,7 +93,8 @@ impl Active {
 
     /// Whether it should get its first picture before the next request has its turn.
     fn is_owed_a_picture(&self) -> bool {
-        !self.failed && !self.engine.has_picture() && self.begun.elapsed() < PATIENCE
+        let may_get_one = !self.failed && !self.holds();
+        may_get_one && !self.engine.has_picture() && self.begun.elapsed() < PATIENCE
     }
 }
 
@@ -174,9 +183,14 @@ impl Worker {
             return;
         }
         let Awaits::Resumption(sampler) = &job.awaits else { return };
-        job.engine.start_over(sampler.clone());
+        let sampler = sampler.clone();
         job.awaits = Awaits::Nothing;
         job.shown_final = false;
+        if job.resumed_at.is_some() {
+            job.engine.go_on_with(sampler);
+            return;
+        }
+        job.engine.start_over(sampler);
         let shown = lock(&self.shared.latest);
         let shown = shown.as_ref().filter(|picture| picture.generation == job.generation);
         job.held_below = shown.map_or(0, |picture| picture.stats.paths);
@@ -190,11 +204,13 @@ impl Worker {
             self.seconds_per_path = cost.or(self.seconds_per_path);
             old_film = Some(film);
         }
+        let resumed_at = request.resume.as_ref().map(|resume| resume.seconds);
         match film_for(request.resume, request.size, old_film) {
             Ok(film) => {
                 let limits = Limits { spp: request.spp, seconds: None };
                 let engine = Engine::new(request.sampler, film, limits, self.seconds_per_path);
-                self.job = Some(Active::new(engine, request.generation, request.provisional));
+                let (generation, provisional) = (request.generation, request.provisional);
+                self.job = Some(Active::new(engine, generation, provisional, resumed_at));
             }
             Err(error) => {
                 let failure = Failure { at: None, message: error.to_string() };
@@ -237,7 +253,7 @@ impl Worker {
     /// One step of the render; returns whether there is nothing to do until the next letter.
     fn work(&mut self) -> bool {
         let Some(job) = &mut self.job else { return true };
-        if job.failed {
+        if job.failed || job.holds() && !job.may_show() {
             return true;
         }
         let (shared, epoch, begun) = (&self.shared, self.epoch, job.begun);
@@ -249,7 +265,7 @@ impl Worker {
                     || shared.improved.load(Ordering::Relaxed)
                     || begun.elapsed() > PATIENCE)
         };
-        let paused = self.paused && job.may_show();
+        let paused = (self.paused || job.holds()) && job.may_show();
         let step = job.engine.step(&self.pool, paused, &stop);
         let finished = job.engine.is_finished();
         let due = job.may_show() && job.engine.publish_due() || finished && !job.shown_final;
@@ -282,6 +298,7 @@ impl Worker {
         let wanted = self.shows_steps.then_some(&mut steps);
         let mut stats = job.engine.picture(&self.pool, &mut pixels, wanted);
         stats.finished &= job.is_settled();
+        stats.seconds += job.resumed_at.unwrap_or(0.0);
         let picture = Arc::new(Picture {
             generation: job.generation,
             size: job.engine.film().size(),
@@ -308,9 +325,9 @@ impl Worker {
 }
 
 /// The film to render on: the one to resume, the old one cleared, or a new one.
-fn film_for(resume: Option<Film>, size: UVec2, old: Option<Film>) -> Result<Film> {
+fn film_for(resume: Option<Resume>, size: UVec2, old: Option<Film>) -> Result<Film> {
     match (resume, old) {
-        (Some(film), _) => same_size(film, size),
+        (Some(resume), _) => same_size(resume.film, size),
         (None, Some(mut film)) if film.size() == size => {
             film.clear();
             Ok(film)
