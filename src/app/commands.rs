@@ -96,9 +96,10 @@ impl Command {
     pub fn tooltip(self) -> &'static str {
         match self {
             C::Open => {
-                "Open a scene (.toml) or a volume (.vdb). Files can also be dropped on the window."
+                "Open a scene (.toml) or a volume (.vdb), or go on from a snapshot (.exr). Files can \
+                 also be dropped on the window."
             }
-            C::OpenPath => "Type the path of a scene or a volume, or builtin:NAME.",
+            C::OpenPath => "Type the path of a scene, a volume or a snapshot, or builtin:NAME.",
             C::SaveExr => "Save the picture as it is, linear and with its layers, as an EXR.",
             C::SavePng => "Save the picture as you see it, with exposure and tone curve, as a PNG.",
             C::SaveScene => "Save every setting as a scene file that renders to the same picture.",

@@ -7,10 +7,11 @@ use std::time::{Duration, Instant};
 use glam::UVec2;
 
 use super::loader::{Built, Grids, Job, Loader, Outcome, Report, Start};
+use super::notices::Notice;
 use super::prober::Prober;
 use super::state::Document;
 use crate::error::{Error, Result};
-use crate::render::{Picture, Session};
+use crate::render::{Picture, Resume, Session};
 use crate::scene::Settings;
 use crate::scene::settings::FilmSettings;
 use crate::transport::Scene;
@@ -29,6 +30,8 @@ pub enum News {
         settings: Box<Settings>,
         /// What was guessed for a bare volume, one a line.
         notes: Vec<String>,
+        /// How it goes on, where it was a snapshot, which keeps the size of its film.
+        reopened: Option<Notice>,
     },
     /// A file could not be opened, or a sample could not be taken.
     Failed(String),
@@ -60,6 +63,8 @@ pub struct Engine {
     paused: bool,
     shows_steps: bool,
     picture: Option<Arc<Picture>>,
+    /// The samples of what was opened last, until its render starts.
+    resume: Option<Resume>,
 }
 
 /// The render under way.
@@ -103,6 +108,7 @@ impl Engine {
             paused: false,
             shows_steps: false,
             picture: None,
+            resume: None,
         })
     }
 
@@ -247,7 +253,12 @@ impl Engine {
                     Job::Open(source) => {
                         self.refused = None;
                         let (settings, notes) = (built.settings.clone(), built.notes.clone());
-                        News::Opened { source, settings: Box::new(settings), notes }
+                        let (resume, reopened) = outcome
+                            .reopened
+                            .map(|reopened| (reopened.resume, reopened.notice))
+                            .unzip();
+                        self.resume = resume.flatten();
+                        News::Opened { source, settings: Box::new(settings), notes, reopened }
                     }
                 });
                 self.built = Some(built);
@@ -293,7 +304,14 @@ impl Engine {
         built.settings.film = wanted;
         let built = built.clone();
         let start = self.next_start(size, news);
-        self.prober.start(&built, start);
+        let resume = self.resume.take();
+        if resume.as_ref().is_some_and(|resume| resume.film.size() != size) {
+            let text = "The graphics card cannot show a picture of this size, so that it cannot be \
+                        continued: it is rendered anew, smaller.";
+            news.push(News::Failed(text.to_owned()));
+        }
+        let resume = resume.filter(|resume| resume.film.size() == size);
+        self.prober.start(&built, start, resume);
         self.started = Some(Started::new(&built, start));
     }
 

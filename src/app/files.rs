@@ -9,7 +9,7 @@ use super::commands::Command;
 /// What a path is wanted for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
-    /// To open a scene or a volume.
+    /// To open a scene, a volume or a snapshot.
     Open,
     /// To save the linear picture with its layers.
     SaveExr,
@@ -126,7 +126,7 @@ fn describe(purpose: Purpose, suggested: &Path) -> rfd::FileDialog {
     match purpose {
         Purpose::Open => {
             return dialog
-                .add_filter("Scenes and volumes", &["toml", "vdb"])
+                .add_filter("Scenes, volumes and snapshots", &["toml", "vdb", "exr"])
                 .add_filter("All files", &["*"]);
         }
         Purpose::SaveExr => dialog.add_filter("OpenEXR", &["exr"]),

@@ -9,6 +9,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, mpsc};
 use glam::UVec2;
 
 use super::prober::Prober;
+use super::reopen::{self, Reopened};
 use crate::error::{Error, Progress, Result};
 use crate::scene::{self, GridDescription, Overrides, Settings, VolumeCache};
 use crate::transport::Scene;
@@ -19,7 +20,7 @@ pub type Grids = HashMap<String, Vec<GridDescription>>;
 /// What the loader is asked to do.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Job {
-    /// Read a scene or a volume (a path or `builtin:NAME`) and build it.
+    /// Read a scene, a volume or a snapshot (a path or `builtin:NAME`) and build it.
     Open(String),
     /// Build these settings.
     Build(Settings),
@@ -52,6 +53,8 @@ pub struct Outcome {
     pub result: Result<Built>,
     /// The render that was started, if one was asked for and the scene could be built.
     pub started: Option<Start>,
+    /// How it goes on, where a snapshot was opened.
+    pub reopened: Option<Reopened>,
 }
 
 /// A built scene and the settings that it was built from.
@@ -204,16 +207,21 @@ fn work(
             continue;
         }
         shared.desk().busy = false;
+        let (result, reopened) = match result {
+            Ok((built, reopened)) => (Ok(built), reopened),
+            Err(error) => (Err(error), None),
+        };
         let settings = result.as_ref().ok().map(|built| built.settings.clone());
         let started = start.filter(|start| match &result {
             Ok(built) => {
-                prober.start(built, *start);
+                prober.start(built, *start, None);
                 true
             }
             Err(_) => false,
         });
         // The receiver lives as long as this thread: the loader joins it.
-        let _ = reports.send(Report::Ended(Box::new(Outcome { number, job, result, started })));
+        let outcome = Outcome { number, job, result, started, reopened };
+        let _ = reports.send(Report::Ended(Box::new(outcome)));
         on_news();
         let Some(settings) = settings else { continue };
         let still_latest = |_: f32| is_latest();
@@ -225,16 +233,24 @@ fn work(
     }
 }
 
-fn run(job: &Job, cache: &VolumeCache, progress: Progress<'_>) -> Result<Built> {
-    let (settings, notes) = match job {
+fn run(
+    job: &Job,
+    cache: &VolumeCache,
+    progress: Progress<'_>,
+) -> Result<(Built, Option<Reopened>)> {
+    let (settings, notes, reopened) = match job {
+        Job::Open(source) if reopen::is_snapshot(source) => {
+            let (settings, reopened) = reopen::open(source)?;
+            (settings, Vec::new(), Some(reopened))
+        }
         Job::Open(source) => {
             let opened = scene::open(source, &Overrides::default(), cache, progress)?;
-            (opened.settings, opened.notes)
+            (opened.settings, opened.notes, None)
         }
-        Job::Build(settings) => (settings.clone(), Vec::new()),
+        Job::Build(settings) => (settings.clone(), Vec::new(), None),
     };
     let scene = Arc::new(scene::build(&settings, cache, progress)?);
-    Ok(Built { settings, notes, scene })
+    Ok((Built { settings, notes, scene }, reopened))
 }
 
 /// Adds the grids of the files of `settings` that `grids` does not have yet, and reads those that

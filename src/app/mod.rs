@@ -6,7 +6,7 @@
 //! - `viewport`, `navigation`, `zoom`, `display`: the picture and the hand on it.
 //! - `diagnostics`: cells over the picture and maps in its place, to understand a render.
 //! - `panels`, `widgets`, `notices`, `theme`: what is around it.
-//! - `files`, `saver`: choosing and writing files.
+//! - `files`, `saver`, `reopen`: choosing, writing and going on from files.
 //! - `frame_stats`: what the window costs (`FLAMBEAU_FRAME_STATS=FILE`).
 
 mod commands;
@@ -22,6 +22,7 @@ mod navigation;
 mod notices;
 mod panels;
 mod prober;
+mod reopen;
 mod saver;
 mod state;
 mod theme;
@@ -64,7 +65,7 @@ impl eframe::App for Window {
     }
 }
 
-/// Opens the window on a scene or volume (a path or `builtin:NAME`), or on the default scene, and
+/// Opens the window on a scene, a volume or a snapshot (a path or `builtin:NAME`), or on the default scene, and
 /// returns when it is closed.
 ///
 /// # Errors

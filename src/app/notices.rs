@@ -49,7 +49,8 @@ impl Notices {
         self.push(Notice { level: Level::Refused, text: text.into() });
     }
 
-    fn push(&mut self, notice: Notice) {
+    /// Shows a message.
+    pub fn push(&mut self, notice: Notice) {
         self.list.retain(|old| old.level == Level::Failed && *old != notice);
         self.list.push(notice);
         if self.list.len() > MOST {

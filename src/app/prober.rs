@@ -9,7 +9,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use super::loader::{Built, Start};
 use crate::error::{Error, Result};
 use crate::render::pool::{Pool, Priority};
-use crate::render::{Request, Session};
+use crate::render::{Request, Resume, Session};
 use crate::transport::probes::Probes;
 use crate::transport::{Frame, PixelSampler, Scene};
 
@@ -64,13 +64,15 @@ impl Prober {
         Ok(Self { session, shared, thread: Some(thread) })
     }
 
-    /// Starts to render `built`, with its probes as soon as they are there. The latest wins: of an
-    /// earlier start they are placed no further, unless this one has the same.
-    pub fn start(&self, built: &Built, start: Start) {
+    /// Starts to render `built`, with its probes as soon as they are there, on from `resume` if
+    /// there is any. The latest wins: of an earlier start they are placed no further, unless this
+    /// one has the same.
+    pub fn start(&self, built: &Built, start: Start, resume: Option<Resume>) {
         let mut desk = self.shared.desk();
         let known = desk.known(built);
         let provisional = known.is_none();
-        self.session.start(request(built, start, known.flatten(), provisional));
+        let request = request(built, start, known.flatten(), provisional);
+        self.session.start(Request { resume, ..request });
         let goes_on = provisional && desk.waiting.as_ref().is_some_and(|(b, _)| same(b, built));
         if !goes_on {
             self.shared.edition.fetch_add(1, Ordering::Relaxed);

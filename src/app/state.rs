@@ -35,10 +35,11 @@ pub struct Editor {
 const WHEEL_PAUSE: Duration = Duration::from_millis(600);
 
 impl Editor {
-    /// Starts over with `settings`, keeping how the picture is shown.
-    pub fn open(&mut self, settings: Settings) {
+    /// Starts over with `settings`, on a film of their own size if `keep_size`, keeping how the
+    /// picture is shown.
+    pub fn open(&mut self, settings: Settings, keep_size: bool) {
         let tone = self.document.tone;
-        self.document = Document { settings, tone, keep_size: false };
+        self.document = Document { settings, tone, keep_size };
         self.opened = self.document.clone();
         self.before = self.document.clone();
         self.history = History::default();

@@ -16,7 +16,7 @@ use super::display;
 use super::engine::{Engine, News};
 use super::files::{Answer, Dialog, Dialogs, Purpose};
 use super::frame_stats::FrameStats;
-use super::notices::{Level, Notices};
+use super::notices::{Level, Notice, Notices};
 use super::panels::bars::PathBar;
 use super::saver::Saver;
 use super::state::Editor;
@@ -28,7 +28,7 @@ use crate::scene::DEFAULT_SCENE;
 /// How the window is set up.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// The scene or volume to open first; `None`: the embedded default scene.
+    /// The scene, volume or snapshot to open first; `None`: the embedded default scene.
     pub source: Option<String>,
     /// Threads that sample; `None`: as many as fit.
     pub threads: Option<usize>,
@@ -146,12 +146,16 @@ impl App {
     fn take_in(&mut self, ctx: &Context, news: Vec<News>) {
         for item in news {
             match item {
-                News::Opened { source, settings, notes } => {
+                News::Opened { source, settings, notes, reopened } => {
                     self.notes = notes;
-                    self.editor.open(*settings);
+                    self.editor.open(*settings, reopened.is_some());
                     self.viewport.zoom = Default::default();
                     self.notices = Notices::default();
                     self.source = source;
+                    if let Some(Notice { level, text }) = reopened {
+                        let text = format!("{}: {text}", self.title());
+                        self.notices.push(Notice { level, text });
+                    }
                     let title = format!("{} – Flambeau", self.title());
                     ctx.send_viewport_cmd(egui::ViewportCommand::Title(title));
                 }

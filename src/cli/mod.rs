@@ -23,8 +23,8 @@ use crate::error::Error;
 struct Arguments {
     #[command(subcommand)]
     command: Option<Command>,
-    /// A scene file, a volume or `builtin:NAME` to open in the window; without one the default
-    /// scene.
+    /// A scene file, a volume, a snapshot (.exr) to go on from, or `builtin:NAME` to open in the
+    /// window; without one the default scene.
     #[arg(value_name = "SCENE|VOLUME")]
     scene: Option<String>,
 }

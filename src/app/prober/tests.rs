@@ -99,7 +99,7 @@ fn headless(built: &Built) -> Film {
 fn a_picture_comes_before_the_probes_and_with_them_the_one_of_a_headless_render() {
     let built = Scenes::new(SMOKE).build();
     let (prober, gate) = prober();
-    prober.start(&built, start(1));
+    prober.start(&built, start(1), None);
     let paths = u64::from(SIZE.element_product() * SPP);
     let before = wait(&prober, |picture| picture.stats.paths == paths);
     assert!(!before.stats.finished, "its probes are still to come");
@@ -123,7 +123,7 @@ fn camera_and_film_edits_reuse_the_probes_and_others_do_not() {
     let mut made_by = |scenes: &Scenes| {
         generation += 1;
         let built = scenes.build();
-        prober.start(&built, start(generation));
+        prober.start(&built, start(generation), None);
         wait(&prober, |picture| picture.generation == generation && picture.stats.finished);
         assert_eq!(prober.session.snapshot().recv().unwrap(), headless(&built));
         gate.passed.load(Ordering::Relaxed)
@@ -162,17 +162,17 @@ fn a_fog_without_borders_has_probes_around_its_camera() {
 fn edits_while_probes_are_placed() {
     let mut scenes = Scenes::new(SMOKE);
     let (prober, gate) = prober();
-    prober.start(&scenes.build(), start(1));
+    prober.start(&scenes.build(), start(1), None);
     let edition = || prober.shared.edition.load(Ordering::Relaxed);
     let under_way = edition();
     for generation in 2..5 {
         scenes.settings.camera.position[0] += 0.1;
-        prober.start(&scenes.build(), start(generation));
+        prober.start(&scenes.build(), start(generation), None);
     }
     assert_eq!(edition(), under_way);
     scenes.settings.light[0].position = Some([0.0, 0.5, 0.0]);
     let last = scenes.build();
-    prober.start(&last, start(5));
+    prober.start(&last, start(5), None);
     assert_ne!(edition(), under_way);
     gate.open.store(true, Ordering::Relaxed);
     wait(&prober, |picture| picture.generation == 5 && picture.stats.finished);
