@@ -146,6 +146,35 @@ pub fn read_snapshot(path: &Path) -> Result<Snapshot> {
     Ok(Snapshot { film, header })
 }
 
+/// Reads the beauty of a snapshot and leaves the rest: its size and linear RGBA, row 0 on top, to
+/// the bit as [`resolve`](crate::render::publish::resolve) reads it from the film.
+///
+/// # Errors
+/// When it cannot be read, was not written by Flambeau, or is damaged.
+pub fn read_picture(path: &Path) -> Result<(UVec2, Vec<[f32; 4]>)> {
+    let Info { size, header, .. } = read_info(path)?;
+    if header.is_none() {
+        return Err(invalid(path, "", "this EXR was not written by Flambeau"));
+    }
+    let width = size.x as usize;
+    let count = width.saturating_mul(size.y as usize);
+    let image = exr::prelude::read_first_rgba_layer_from_file(
+        path,
+        move |_, _| bytemuck::allocation::try_zeroed_vec(count).unwrap_or_default(),
+        move |pixels: &mut Vec<[f32; 4]>, at, (r, g, b, a): (f32, f32, f32, f32)| {
+            if let Some(pixel) = pixels.get_mut(at.y() * width + at.x()) {
+                *pixel = [r, g, b, a];
+            }
+        },
+    )
+    .map_err(|e| exr_error(path, e))?;
+    let pixels = image.layer_data.channel_data.pixels;
+    match pixels.len() == count {
+        true => Ok((size, pixels)),
+        false => Err(invalid(path, "", "its picture does not fit the memory")),
+    }
+}
+
 /// Fills `film` from the state of every pixel; returns the number of paths.
 fn read_state(path: &Path, reader: Reader<BufReader<File>>, film: &mut Film) -> Result<u64> {
     let Some(part) = reader.headers().first() else { return Ok(0) };
@@ -310,6 +339,9 @@ mod tests {
             let snapshot = read_snapshot(&path).unwrap();
             assert_eq!(snapshot.film, film);
             assert_eq!(snapshot.header, header());
+            let mut pixels = Vec::new();
+            crate::render::publish::resolve(&film, &mut pixels);
+            assert_eq!(read_picture(&path).unwrap(), (film.size(), pixels));
         }
     }
 
