@@ -31,13 +31,21 @@ pub enum Command {
     NextToneCurve,
     FoldPanels,
     Shortcuts,
+    KeepSnapshot,
+    PreviousSnapshot,
+    NextSnapshot,
+    LivePicture,
+    ContinueSnapshot,
+    DeleteSnapshot,
+    UndoDelete,
+    FoldStrip,
 }
 
 use Command as C;
 
 impl Command {
     /// All of them, in the order of the help page.
-    pub const ALL: [Self; 23] = [
+    pub const ALL: [Self; 31] = [
         C::Open,
         C::OpenPath,
         C::SaveExr,
@@ -61,6 +69,14 @@ impl Command {
         C::NextToneCurve,
         C::FoldPanels,
         C::Shortcuts,
+        C::KeepSnapshot,
+        C::PreviousSnapshot,
+        C::NextSnapshot,
+        C::LivePicture,
+        C::ContinueSnapshot,
+        C::DeleteSnapshot,
+        C::UndoDelete,
+        C::FoldStrip,
     ];
 
     /// What menus and buttons call it.
@@ -89,6 +105,14 @@ impl Command {
             C::NextToneCurve => "Next tone curve",
             C::FoldPanels => "Fold the panels",
             C::Shortcuts => "Keys and mouse",
+            C::KeepSnapshot => "Keep snapshot",
+            C::PreviousSnapshot => "Previous snapshot",
+            C::NextSnapshot => "Next snapshot",
+            C::LivePicture => "Back to the live picture",
+            C::ContinueSnapshot => "Go on from the snapshot",
+            C::DeleteSnapshot => "Delete snapshot",
+            C::UndoDelete => "Undo delete",
+            C::FoldStrip => "Show or fold the strip",
         }
     }
 
@@ -123,6 +147,18 @@ impl Command {
             C::NextToneCurve => "Switch between the linear and the filmic tone curve.",
             C::FoldPanels => "Hide the panels and give the picture the room, or bring them back.",
             C::Shortcuts => "Show every key and every move of the mouse.",
+            C::KeepSnapshot => {
+                "Keep the picture as it is in the strip, with all that is needed to go on from it."
+            }
+            C::PreviousSnapshot => "Show the snapshot before, in place of the live picture.",
+            C::NextSnapshot => "Show the snapshot after, or the live picture behind the last.",
+            C::LivePicture => "Show the picture that is being rendered again.",
+            C::ContinueSnapshot => "Open the scene of the snapshot shown and add samples to it.",
+            C::DeleteSnapshot => {
+                "Delete the snapshot shown. It can be undone until the program ends."
+            }
+            C::UndoDelete => "Bring the snapshot deleted last back.",
+            C::FoldStrip => "Show the strip of snapshots under the picture, or hide it.",
         }
     }
 
@@ -152,6 +188,14 @@ impl Command {
             C::NextToneCurve => (Modifiers::NONE, Key::T),
             C::FoldPanels => (Modifiers::NONE, Key::N),
             C::Shortcuts => (Modifiers::NONE, Key::F1),
+            C::KeepSnapshot => (Modifiers::NONE, Key::K),
+            C::PreviousSnapshot => (Modifiers::NONE, Key::ArrowLeft),
+            C::NextSnapshot => (Modifiers::NONE, Key::ArrowRight),
+            C::LivePicture => (Modifiers::NONE, Key::Escape),
+            C::ContinueSnapshot => (Modifiers::COMMAND, Key::Enter),
+            C::DeleteSnapshot => (Modifiers::NONE, Key::Delete),
+            C::UndoDelete => (Modifiers::COMMAND.plus(Modifiers::ALT), Key::Z),
+            C::FoldStrip => (Modifiers::SHIFT, Key::N),
         };
         KeyboardShortcut::new(modifiers, key)
     }
@@ -174,12 +218,23 @@ impl Command {
                 .into_iter()
                 .filter(|command| {
                     let shortcut = command.shortcut();
-                    let taken = if shortcut.logical_key == Key::Space { focused } else { typing };
+                    let taken = match shortcut.logical_key {
+                        Key::Space | Key::ArrowLeft | Key::ArrowRight => focused,
+                        _ => typing,
+                    };
                     let plain = !shortcut.modifiers.command;
-                    !(plain && taken) && input.consume_shortcut(&shortcut)
+                    !(plain && taken) && is_pressed(input, &shortcut)
                 })
                 .collect()
         })
+    }
+}
+
+/// Whether a shortcut was pressed, which then is nobody else's; Escape also closes what is open.
+fn is_pressed(input: &mut egui::InputState, shortcut: &KeyboardShortcut) -> bool {
+    match shortcut.logical_key {
+        Key::Escape => input.key_pressed(Key::Escape),
+        _ => input.consume_shortcut(shortcut),
     }
 }
 

@@ -7,6 +7,7 @@
 //! - `diagnostics`: cells over the picture and maps in its place, to understand a render.
 //! - `panels`, `widgets`, `notices`, `theme`: what is around it.
 //! - `files`, `saver`, `reopen`: choosing, writing and going on from files.
+//! - `snapshots`: pictures kept in a strip, on the disk between runs.
 //! - `frame_stats`: what the window costs (`FLAMBEAU_FRAME_STATS=FILE`).
 
 mod commands;
@@ -24,6 +25,7 @@ mod panels;
 mod prober;
 mod reopen;
 mod saver;
+mod snapshots;
 mod state;
 mod theme;
 mod up_axis;

@@ -1,15 +1,17 @@
 //! Writes pictures and scenes on threads of their own, pictures from a consistent copy of the film.
 
+use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::sync::mpsc;
+use std::sync::{Arc, mpsc};
 
 use crate::error::{Error, Result};
+use crate::files;
 use crate::image::exr::{self, Header};
 use crate::image::png;
 use crate::image::tone::Tone;
-use crate::render::Film;
 use crate::render::publish::resolve;
+use crate::render::{Film, Picture};
 use crate::scene::{self, Settings};
 
 /// What is to be written.
@@ -32,6 +34,15 @@ pub enum Content {
     },
     /// A scene file.
     Scene(Settings),
+    /// What another file holds.
+    Copy(PathBuf),
+    /// A picture kept earlier, as shown.
+    Shown {
+        /// The picture.
+        picture: Arc<Picture>,
+        /// How it is shown.
+        tone: Tone,
+    },
 }
 
 /// A save under way.
@@ -114,10 +125,19 @@ fn write(path: &Path, content: Content) -> Result<()> {
             png::write(path, film.size(), &pixels, tone)
         }
         Content::Scene(settings) => scene::save(&settings, path),
+        Content::Copy(from) => {
+            let mut source = File::open(&from).map_err(|e| Error::io(&from, e))?;
+            files::replace(path, |file| match std::io::copy(&mut source, file) {
+                Ok(_) => Ok(()),
+                Err(error) => Err(Error::io(path, error)),
+            })
+        }
+        Content::Shown { picture, tone } => png::write(path, picture.size, &picture.pixels, tone),
     }
 }
 
-fn receive(path: &Path, film: &mpsc::Receiver<Film>) -> Result<Film> {
+/// The film, once the session has copied it; `path` is what it is wanted for.
+pub fn receive(path: &Path, film: &mpsc::Receiver<Film>) -> Result<Film> {
     film.recv().map_err(|_| {
         let reason = "there is no picture to save, or too little memory for a copy of it";
         Error::invalid(path.display().to_string(), "", reason)
@@ -125,7 +145,7 @@ fn receive(path: &Path, film: &mpsc::Receiver<Film>) -> Result<Film> {
 }
 
 /// What the snapshot says about how it came about.
-fn header(settings: &Settings, seconds: f64) -> Result<Header> {
+pub fn header(settings: &Settings, seconds: f64) -> Result<Header> {
     let strategy = toml::to_string(&settings.strategy)
         .map_err(|error| Error::invalid("", "strategy", error.to_string()))?;
     Ok(Header {

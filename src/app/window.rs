@@ -3,6 +3,7 @@
 mod execute;
 mod layout;
 mod paths;
+mod stored;
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -19,6 +20,7 @@ use super::frame_stats::FrameStats;
 use super::notices::{Level, Notice, Notices};
 use super::panels::bars::PathBar;
 use super::saver::Saver;
+use super::snapshots::Snapshots;
 use super::state::Editor;
 use super::theme;
 use super::viewport::Viewport;
@@ -36,6 +38,9 @@ pub struct Options {
     pub dialogs: Dialogs,
     /// Whether each frame begins in the color of the panels, so that they need not be painted.
     pub cleared: bool,
+    /// The folder that keeps what outlasts a run; `None`: what the environment says (`FLAMBEAU_DATA`)
+    /// or the system has for it.
+    pub data: Option<PathBuf>,
 }
 
 /// Everything behind the window. It needs a render state but no window, so tests can drive it.
@@ -60,6 +65,9 @@ pub struct App {
     help: bool,
     largest: u32,
     stats: Option<FrameStats>,
+    snapshots: Snapshots,
+    /// The snapshot that a path is being asked for, where one was shown.
+    subject: Option<String>,
 }
 
 impl App {
@@ -93,6 +101,8 @@ impl App {
             help: false,
             largest: display::largest_size(state),
             stats,
+            snapshots: Snapshots::new(ctx, options.data)?,
+            subject: None,
         })
     }
 
@@ -121,6 +131,7 @@ impl App {
         self.take_in(&ctx, news);
         self.take_in_arrivals(&ctx);
         self.save_waiting(&ctx);
+        self.update_snapshots(&ctx);
         self.editor.begin_frame(&ctx);
         let mut commands = Command::pressed(&ctx);
         self.layout(ui, &mut commands);
@@ -138,6 +149,7 @@ impl App {
     /// Finishes what is being saved and writes the diagnostic figures, if they were asked for.
     pub fn close(&mut self) {
         self.saver.finish();
+        self.snapshots.close();
         if let Some(stats) = &self.stats {
             stats.write();
         }
@@ -151,7 +163,7 @@ impl App {
                     self.editor.open(*settings, reopened.is_some());
                     self.viewport.zoom = Default::default();
                     self.notices = Notices::default();
-                    self.source = source;
+                    self.source = self.name_of(source);
                     if let Some(Notice { level, text }) = reopened {
                         let text = format!("{}: {text}", self.title());
                         self.notices.push(Notice { level, text });
@@ -226,5 +238,7 @@ impl App {
         if let Some(stats) = &mut self.stats {
             stats.started(generation);
         }
+        // Whoever asks for another picture wants to see it.
+        self.snapshots.strip.show(None);
     }
 }

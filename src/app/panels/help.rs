@@ -25,20 +25,22 @@ pub fn show(ctx: &Context, open: &mut bool) {
         .default_pos(ctx.content_rect().center())
         .show(ctx, |ui| {
             ui.horizontal_top(|ui| {
-                table(
-                    ui,
-                    "keys",
-                    Command::ALL.map(|command| {
+                let (left, right) = Command::ALL.split_at(Command::ALL.len().div_ceil(2));
+                for (id, commands) in [("keys", left), ("more keys", right)] {
+                    let row = |command: &Command| {
                         (ui.ctx().format_shortcut(&command.shortcut()), command.text().to_owned())
-                    }),
-                );
-                ui.add_space(24.0);
-                table(ui, "mouse", MOUSE.map(|(hand, does)| (hand.to_owned(), does.to_owned())));
+                    };
+                    let rows = commands.iter().map(row).collect();
+                    table(ui, id, rows);
+                    ui.add_space(24.0);
+                }
+                let row = |(hand, does): (&str, &str)| (hand.to_owned(), does.to_owned());
+                table(ui, "mouse", MOUSE.into_iter().map(row).collect());
             });
         });
 }
 
-fn table<const N: usize>(ui: &mut Ui, id: &str, rows: [(String, String); N]) {
+fn table(ui: &mut Ui, id: &str, rows: Vec<(String, String)>) {
     Grid::new(id).num_columns(2).spacing([18.0, 4.0]).show(ui, |ui| {
         for (left, right) in rows {
             ui.label(RichText::new(left).color(color::TEXT_STRONG));

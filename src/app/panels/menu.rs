@@ -17,6 +17,11 @@ const VIEW: [&[Command]; 3] = [
     &[Command::ExposureUp, Command::ExposureDown, Command::NextToneCurve],
     &[Command::FoldPanels],
 ];
+const SNAPSHOTS: [&[Command]; 3] = [
+    &[Command::KeepSnapshot, Command::FoldStrip],
+    &[Command::PreviousSnapshot, Command::NextSnapshot, Command::LivePicture],
+    &[Command::ContinueSnapshot, Command::DeleteSnapshot, Command::UndoDelete],
+];
 const HELP: [&[Command]; 1] = [&[Command::Shortcuts]];
 
 /// Shows the bar. `title` names what is open.
@@ -26,6 +31,7 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>, title: &str) {
         edit_menu(ui, panel);
         menu(ui, panel, "Render", &RENDER);
         menu(ui, panel, "View", &VIEW);
+        menu(ui, panel, "Snapshots", &SNAPSHOTS);
         menu(ui, panel, "Help", &HELP);
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.add_space(4.0);

@@ -10,6 +10,7 @@ pub mod help;
 pub mod menu;
 pub mod status;
 pub mod strategy;
+pub mod strip;
 pub mod volume;
 
 use egui::{CollapsingHeader, RichText, Ui};

@@ -6,6 +6,7 @@ use egui::{Align, Button, DragValue, Layout, RichText, Ui};
 use super::Panel;
 use crate::app::commands::Command;
 use crate::app::engine::Engine;
+use crate::app::snapshots::{Item, Snapshots};
 use crate::app::theme::{color, space};
 use crate::app::viewport::Viewport;
 use crate::app::widgets::{count, finite};
@@ -19,7 +20,13 @@ const ZOOM_WIDTH: f32 = 70.0;
 const PROBE_WIDTH: f32 = 280.0;
 
 /// Shows the line.
-pub fn show(ui: &mut Ui, panel: &mut Panel<'_>, engine: &Engine, viewport: &Viewport) {
+pub fn show(
+    ui: &mut Ui,
+    panel: &mut Panel<'_>,
+    engine: &Engine,
+    viewport: &Viewport,
+    snapshots: &Snapshots,
+) {
     ui.horizontal_centered(|ui| {
         let (text, help) = if engine.paused() {
             ("Resume", "Go on sampling.")
@@ -31,8 +38,12 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>, engine: &Engine, viewport: &View
         if ui.add(button).on_hover_text(format!("{help}  [{key}]")).clicked() {
             panel.commands.push(Command::PauseResume);
         }
-        bias(ui, &panel.editor.document.settings.strategy);
+        let stored = snapshots.strip.shown_item();
+        if stored.is_none() {
+            bias(ui, &panel.editor.document.settings.strategy);
+        }
         match engine.picture() {
+            _ if let Some(item) = stored => stored_figures(ui, item),
             Some(picture) => progress(ui, &picture.stats, engine),
             None => {
                 let opening = engine.opening().is_some() || engine.built().is_some();
@@ -44,7 +55,7 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>, engine: &Engine, viewport: &View
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             // What does not fit beside the figures is left out, the least needed first.
             display(ui, panel);
-            if let Some(picture) = engine.picture()
+            if let Some(picture) = snapshots.picture().or_else(|| engine.picture())
                 && ui.available_width() > ZOOM_WIDTH
             {
                 ui.separator();
@@ -66,9 +77,26 @@ fn bias(ui: &mut Ui, strategy: &Strategy) {
     }
 }
 
+/// Of a snapshot in place of the live picture.
+fn stored_figures(ui: &mut Ui, item: &Item) {
+    let record = &item.record;
+    if item.picture().is_none() {
+        ui.label(RichText::new(format!("Reading {} …", record.name)).color(color::ACCENT));
+        return;
+    }
+    let spp = samples(record.spp);
+    let text = RichText::new(format!("Stored: {}, {spp} spp", record.name)).color(color::ACCENT);
+    ui.add(egui::Label::new(text).truncate())
+        .on_hover_text("A snapshot, not the picture that is being rendered. Escape goes back.");
+}
+
+/// A number of samples in about two digits or more.
+pub fn samples(spp: f64) -> String {
+    if spp < 10.0 { format!("{spp:.1}") } else { format!("{spp:.0}") }
+}
+
 fn progress(ui: &mut Ui, stats: &RenderStats, engine: &Engine) {
-    let spp = stats.samples_per_pixel;
-    let spp = if spp < 10.0 { format!("{spp:.1}") } else { format!("{spp:.0}") };
+    let spp = samples(stats.samples_per_pixel);
     figure(ui, &spp, "spp", "Samples per pixel so far.", 38.0);
     figure(ui, &seconds(stats.seconds), "", "Time spent on this picture.", 50.0);
     let noise = match stats.noise {
@@ -111,7 +139,7 @@ fn figure(ui: &mut Ui, value: &str, unit: &str, help: &str, width: f32) {
 }
 
 /// A fraction in percent, in about three digits.
-fn percent(fraction: f64) -> String {
+pub fn percent(fraction: f64) -> String {
     let percent = 100.0 * fraction;
     let decimals = match percent {
         _ if percent < 10.0 => 2,

@@ -27,11 +27,12 @@ impl App {
             Command::FrameVolume => self.frame_volume(),
             Command::FitPicture => self.viewport.zoom = Default::default(),
             Command::ZoomToPixels => {
-                let size = self.engine.picture().map(|picture| picture.size);
+                let size = self.shown_picture().map(|picture| picture.size);
                 self.viewport.toggle_pixel_zoom(size);
             }
             Command::FoldPanels => self.folded = !self.folded,
             Command::Shortcuts => self.help = !self.help,
+            _ if self.execute_stored(ctx, command) => {}
             _ => self.edit(command),
         }
         ctx.request_repaint();

@@ -32,7 +32,7 @@ impl App {
         });
         let bar = plain.inner_margin(Margin::symmetric(8, 0));
         egui::Panel::bottom("status").exact_size(space::STATUS).frame(bar).show(ui, |ui| {
-            panels::status::show(ui, &mut panel, &self.engine, &self.viewport);
+            panels::status::show(ui, &mut panel, &self.engine, &self.viewport, &self.snapshots);
         });
         if !self.folded {
             let film = self.viewport.film_size();
@@ -56,6 +56,7 @@ impl App {
         if let Some(wait) = self.viewport.resize(area, self.largest) {
             ui.ctx().request_repaint_after(wait);
         }
+        self.strip_row(ui);
         self.path_bar_row(ui);
         drop_row(ui);
         self.progress_row(ui);
@@ -64,11 +65,14 @@ impl App {
                 .frame(theme::panel_frame())
                 .show(ui, |ui| self.notices.show(ui));
         }
-        let picture = self.engine.picture().cloned();
+        let picture = self.shown_picture().cloned();
         let steps = picture.as_deref().and_then(|picture| self.diagnostics.step_scale(picture));
         egui::CentralPanel::no_frame().show(ui, |ui| {
             let view = self.viewport.show(ui, &mut self.editor, picture.as_ref(), steps);
-            if let (Some(view), Some(picture)) = (view, &picture) {
+            // What is drawn over the picture is about the live one.
+            if let (Some(view), Some(picture)) = (view, &picture)
+                && self.snapshots.picture().is_none()
+            {
                 self.diagnostics.show(ui, view, picture, &self.editor.document.settings);
             }
         });
@@ -92,7 +96,7 @@ impl App {
     fn progress_row(&mut self, ui: &mut Ui) {
         let Some(fraction) = self.engine.progress() else { return };
         let what = match self.engine.opening() {
-            Some(source) => format!("Loading {source}"),
+            Some(source) => format!("Loading {}", self.name_of(source.to_owned())),
             None => "Building the scene".to_owned(),
         };
         let frame = theme::panel_frame();

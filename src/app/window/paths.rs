@@ -51,6 +51,9 @@ impl App {
 
     /// What saving writes at this moment; `None` where there is nothing yet.
     fn content(&self, purpose: Purpose) -> Option<Content> {
+        if self.subject.is_some() && matches!(purpose, Purpose::SaveExr | Purpose::SavePng) {
+            return self.stored_content(purpose);
+        }
         let document = &self.editor.document;
         let settings = self.engine.rendered()?;
         match purpose {
@@ -74,6 +77,7 @@ impl App {
 
     /// Asks for a path in the way that the options say.
     pub(super) fn ask(&mut self, ctx: &Context, purpose: Purpose) {
+        self.subject = self.snapshots.strip.shown_item().map(|item| item.entry.id.clone());
         if self.dialogs == Dialogs::Typed {
             self.ask_typed(purpose);
         } else if self.dialog.is_none() {
@@ -97,7 +101,7 @@ impl App {
     /// A file beside what is open, or in the present folder.
     fn suggested(&self, purpose: Purpose) -> PathBuf {
         let here = std::env::current_dir().unwrap_or_default();
-        let name = Path::new(&self.title()).with_extension(purpose.extension().unwrap_or_default());
+        let name = self.suggested_name(purpose);
         let folder = Path::new(&self.source).parent().filter(|folder| folder.is_dir());
         folder.map_or_else(|| here.clone(), |folder| here.join(folder)).join(name)
     }

@@ -3,6 +3,8 @@
 //! Without a graphics adapter the tests are skipped with a message, unless
 //! `FLAMBEAU_REQUIRE_WINDOW_TESTS=1` says that there has to be one.
 
+mod snapshots;
+
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -50,12 +52,18 @@ impl Window {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("scene.toml");
         std::fs::write(&path, scene).unwrap();
+        Self::start(folder, &path)
+    }
+
+    /// A window on a scene, with its data in `folder`; `None` without an adapter.
+    fn start(folder: tempfile::TempDir, scene: &Path) -> Option<Self> {
         let state = render_state()?;
         let options = Options {
-            source: Some(path.to_str().unwrap().to_owned()),
+            source: Some(scene.to_str().unwrap().to_owned()),
             threads: Some(1),
             dialogs: Dialogs::Typed,
             cleared: false,
+            data: Some(folder.path().join("data")),
         };
         let renderer = WgpuTestRenderer::from_render_state(state.clone());
         let harness = Harness::builder().with_size([900.0, 600.0]).renderer(renderer);
