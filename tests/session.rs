@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use flambeau::error::NO_PROGRESS;
 use flambeau::math::Rgb;
 use flambeau::render::estimate::{PixelEstimate, gray};
+use flambeau::render::publish::Extras;
 use flambeau::render::schedule::Limits;
 use flambeau::render::{
     Film, FilmStats, Headless, Job, Picture, Request, Resume, Session, render_headless,
@@ -420,7 +421,7 @@ fn steps_come_when_asked_for_even_after_the_end() {
     let picture = wait(&session, &published, |picture| picture.stats.finished);
     assert!(picture.steps.mean.is_empty());
 
-    session.set_shows_steps(true);
+    session.set_extras(Extras { steps: true, ..Extras::default() });
     let picture = wait(&session, &published, |picture| !picture.steps.mean.is_empty());
     assert_eq!((picture.generation, picture.stats.samples_per_pixel), (1, 4.0));
     assert_eq!(picture.steps.mean, vec![STEPS as f32; picture.pixels.len()]);
@@ -429,7 +430,7 @@ fn steps_come_when_asked_for_even_after_the_end() {
     let picture = wait(&session, &published, |picture| picture.generation == 2);
     assert_eq!(picture.steps.mean.len(), picture.pixels.len());
 
-    session.set_shows_steps(false);
+    session.set_extras(Extras::default());
     session.start(request(&Shade::new(1.0), 4, 3));
     let picture = wait(&session, &published, |picture| picture.generation == 3);
     assert!(picture.steps.mean.is_empty());

@@ -31,6 +31,11 @@ pub enum Command {
     NextToneCurve,
     FoldPanels,
     Shortcuts,
+    Compare,
+    SwitchSide,
+    SwapSides,
+    CopySide,
+    NextLayout,
     KeepSnapshot,
     PreviousSnapshot,
     NextSnapshot,
@@ -45,7 +50,7 @@ use Command as C;
 
 impl Command {
     /// All of them, in the order of the help page.
-    pub const ALL: [Self; 31] = [
+    pub const ALL: [Self; 36] = [
         C::Open,
         C::OpenPath,
         C::SaveExr,
@@ -69,6 +74,11 @@ impl Command {
         C::NextToneCurve,
         C::FoldPanels,
         C::Shortcuts,
+        C::Compare,
+        C::SwitchSide,
+        C::SwapSides,
+        C::CopySide,
+        C::NextLayout,
         C::KeepSnapshot,
         C::PreviousSnapshot,
         C::NextSnapshot,
@@ -105,6 +115,11 @@ impl Command {
             C::NextToneCurve => "Next tone curve",
             C::FoldPanels => "Fold the panels",
             C::Shortcuts => "Keys and mouse",
+            C::Compare => "Compare two strategies",
+            C::SwitchSide => "Edit the other side",
+            C::SwapSides => "Swap A and B",
+            C::CopySide => "Copy to the other side",
+            C::NextLayout => "Next view of A and B",
             C::KeepSnapshot => "Keep snapshot",
             C::PreviousSnapshot => "Previous snapshot",
             C::NextSnapshot => "Next snapshot",
@@ -147,6 +162,14 @@ impl Command {
             C::NextToneCurve => "Switch between the linear and the filmic tone curve.",
             C::FoldPanels => "Hide the panels and give the picture the room, or bring them back.",
             C::Shortcuts => "Show every key and every move of the mouse.",
+            C::Compare => {
+                "Render the scene under two strategies, A and B, that share the machine fairly, or go \
+                 back to one."
+            }
+            C::SwitchSide => "Toggles and advanced choices act on the other side from now on.",
+            C::SwapSides => "Exchange A and B.",
+            C::CopySide => "Give the other side the strategy of the side that is edited.",
+            C::NextLayout => "Wipe, side by side, difference, noise.",
             C::KeepSnapshot => {
                 "Keep the picture as it is in the strip, with all that is needed to go on from it."
             }
@@ -188,6 +211,11 @@ impl Command {
             C::NextToneCurve => (Modifiers::NONE, Key::T),
             C::FoldPanels => (Modifiers::NONE, Key::N),
             C::Shortcuts => (Modifiers::NONE, Key::F1),
+            C::Compare => (Modifiers::NONE, Key::C),
+            C::SwitchSide => (Modifiers::NONE, Key::B),
+            C::SwapSides => (Modifiers::NONE, Key::X),
+            C::CopySide => (Modifiers::SHIFT, Key::X),
+            C::NextLayout => (Modifiers::NONE, Key::V),
             C::KeepSnapshot => (Modifiers::NONE, Key::K),
             C::PreviousSnapshot => (Modifiers::NONE, Key::ArrowLeft),
             C::NextSnapshot => (Modifiers::NONE, Key::ArrowRight),

@@ -1,7 +1,6 @@
 //! What is shown to understand a render: cells drawn over the picture, and maps in its place. None
 //! of it belongs to the scene, the strategy or the record of edits.
 
-mod background;
 mod cells;
 mod legend;
 mod overlay;
@@ -19,7 +18,7 @@ use super::viewport::View;
 use crate::render::Picture;
 use crate::scene::{self, Settings};
 use cells::{Gathering, Source};
-use legend::Legend;
+pub use legend::Legend;
 use ray::Inspector;
 
 /// What the cells drawn over the picture are colored by.
@@ -73,10 +72,17 @@ impl Diagnostics {
         Some(Scale::rounded(range))
     }
 
-    /// Draws over the picture that lies in `view`, the legends in a corner, and what lies along the
-    /// ray of a pixel that was picked.
-    pub fn show(&mut self, ui: &mut Ui, view: View, picture: &Picture, settings: &Settings) {
-        let mut legends = Vec::new();
+    /// Draws over the picture that lies in `view`, the legends in a corner, `map` that of a map in
+    /// its place, and what lies along the ray of a pixel that was picked.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        view: View,
+        picture: &Picture,
+        settings: &Settings,
+        map: Option<Legend>,
+    ) {
+        let mut legends: Vec<Legend> = map.into_iter().collect();
         if let Some(scale) = self.step_scale(picture) {
             legends.push(Legend::of_steps(scale));
         }

@@ -28,6 +28,9 @@ struct View {
     ramp: [[f32; 4]; STOPS],
 }
 
+/// Pictures that can be shown at once.
+pub const PANES: usize = 2;
+
 /// What of a picture is shown.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Look {
@@ -58,8 +61,13 @@ impl Look {
 struct Display {
     pipeline: wgpu::RenderPipeline,
     layout: wgpu::BindGroupLayout,
-    view: wgpu::Buffer,
     encode: bool,
+    panes: [Pane; PANES],
+}
+
+/// A picture on the graphics card and how it is looked at.
+struct Pane {
+    view: wgpu::Buffer,
     shown: Option<Shown>,
 }
 
@@ -82,17 +90,25 @@ pub fn largest_size(state: &RenderState) -> u32 {
     state.device.limits().max_texture_dimension_2d
 }
 
-/// Shows `picture` in `rect`, placed as `placement` says relative to the rect's corner. `corner` is
-/// that corner in framebuffer pixels.
-pub fn paint(
-    painter: &egui::Painter,
-    rect: egui::Rect,
-    corner: Vec2,
-    picture: Arc<Picture>,
-    placement: Placement,
-    look: Look,
-) {
-    let callback = PaintPicture { picture, corner: corner + placement.corner, placement, look };
+/// A picture and where it is to be shown.
+pub struct Shot {
+    /// The picture.
+    pub picture: Arc<Picture>,
+    /// What of it.
+    pub look: Look,
+    /// Where it lies, from `corner`.
+    pub placement: Placement,
+    /// A corner of the window in framebuffer pixels.
+    pub corner: Vec2,
+    /// Which of the pictures shown at once it is, below [`PANES`].
+    pub pane: usize,
+}
+
+/// Shows a picture where it lies in `rect`.
+pub fn paint(painter: &egui::Painter, rect: egui::Rect, shot: Shot) {
+    let Shot { picture, look, placement, corner, pane } = shot;
+    let corner = corner + placement.corner;
+    let callback = PaintPicture { picture, corner, placement, look, pane };
     painter.add(egui_wgpu::Callback::new_paint_callback(rect, callback));
 }
 
@@ -102,6 +118,7 @@ struct PaintPicture {
     corner: Vec2,
     placement: Placement,
     look: Look,
+    pane: usize,
 }
 
 impl CallbackTrait for PaintPicture {
@@ -114,9 +131,12 @@ impl CallbackTrait for PaintPicture {
         resources: &mut CallbackResources,
     ) -> Vec<wgpu::CommandBuffer> {
         if let Some(display) = resources.get_mut::<Display>() {
-            display.upload(device, queue, &self.picture, self.look);
             let view = self.view(display.encode);
-            queue.write_buffer(&display.view, 0, bytemuck::bytes_of(&view));
+            let Display { layout, panes, .. } = display;
+            if let Some(pane) = panes.get_mut(self.pane) {
+                pane.upload(device, queue, layout, &self.picture, self.look);
+                queue.write_buffer(&pane.view, 0, bytemuck::bytes_of(&view));
+            }
         }
         Vec::new()
     }
@@ -128,7 +148,7 @@ impl CallbackTrait for PaintPicture {
         resources: &CallbackResources,
     ) {
         let Some(display) = resources.get::<Display>() else { return };
-        let Some(shown) = &display.shown else { return };
+        let Some(Pane { shown: Some(shown), .. }) = display.panes.get(self.pane) else { return };
         pass.set_pipeline(&display.pipeline);
         pass.set_bind_group(0, &shown.bindings, &[]);
         pass.draw(0..3, 0..1);
@@ -195,13 +215,20 @@ impl Display {
             multiview_mask: None,
             cache: None,
         });
+        let panes = std::array::from_fn(|_| Pane::new(device));
+        Self { pipeline, layout, encode: !target.is_srgb(), panes }
+    }
+}
+
+impl Pane {
+    fn new(device: &wgpu::Device) -> Self {
         let view = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("display view"),
             size: size_of::<View>() as u64,
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        Self { pipeline, layout, view, encode: !target.is_srgb(), shown: None }
+        Self { view, shown: None }
     }
 
     /// Brings what is shown of `picture` onto the graphics card unless it is there already.
@@ -209,6 +236,7 @@ impl Display {
         &mut self,
         device: &wgpu::Device,
         queue: &wgpu::Queue,
+        layout: &wgpu::BindGroupLayout,
         picture: &Arc<Picture>,
         look: Look,
     ) {
@@ -221,7 +249,7 @@ impl Display {
         let fits = |shown: &Shown| shown.picture.size == picture.size && shown.format == format;
         let (texture, bindings) = match self.shown.take().filter(fits) {
             Some(shown) => (shown.texture, shown.bindings),
-            None => self.allocate(device, picture.size, format),
+            None => self.allocate(device, layout, picture.size, format),
         };
         let UVec2 { x: width, y: height } = picture.size;
         queue.write_texture(
@@ -240,6 +268,7 @@ impl Display {
     fn allocate(
         &self,
         device: &wgpu::Device,
+        layout: &wgpu::BindGroupLayout,
         size: UVec2,
         format: wgpu::TextureFormat,
     ) -> (wgpu::Texture, wgpu::BindGroup) {
@@ -256,7 +285,7 @@ impl Display {
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         let bindings = device.create_bind_group(&wgpu::BindGroupDescriptor {
             label: Some("display"),
-            layout: &self.layout,
+            layout,
             entries: &[
                 wgpu::BindGroupEntry { binding: 0, resource: self.view.as_entire_binding() },
                 wgpu::BindGroupEntry {

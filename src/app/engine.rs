@@ -9,11 +9,11 @@ use glam::UVec2;
 use super::loader::{Built, Grids, Job, Loader, Outcome, Report, Start};
 use super::notices::Notice;
 use super::prober::Prober;
-use super::state::Document;
 use crate::error::{Error, Result};
+use crate::render::publish::Extras;
 use crate::render::{Picture, Resume, Session};
-use crate::scene::Settings;
 use crate::scene::settings::FilmSettings;
+use crate::scene::{Settings, VolumeCache};
 use crate::transport::Scene;
 use crate::transport::probes::Probes;
 
@@ -46,6 +46,8 @@ pub enum News {
 /// The loader and the session, and what they are at.
 pub struct Engine {
     loader: Loader,
+    /// The volumes, which a rival shares.
+    cache: Arc<VolumeCache>,
     session: Arc<Session>,
     prober: Arc<Prober>,
     built: Option<Built>,
@@ -61,7 +63,9 @@ pub struct Engine {
     /// The latest generation whose failure was told.
     failed: u64,
     paused: bool,
-    shows_steps: bool,
+    extras: Extras,
+    /// Whether what was built is another engine's.
+    is_fresh: bool,
     picture: Option<Arc<Picture>>,
     /// The samples of what was opened last, until its render starts.
     resume: Option<Resume>,
@@ -91,9 +95,34 @@ impl Engine {
         wake: impl Fn() + Clone + Send + Sync + 'static,
     ) -> Result<Self> {
         let session = Arc::new(Session::new(threads, wake.clone())?);
+        Self::with_cache(session, threads, Arc::default(), wake)
+    }
+
+    /// Another engine for the same scene under another strategy. It shows nothing until it has
+    /// built that.
+    pub fn rival(
+        &self,
+        threads: Option<usize>,
+        wake: impl Fn() + Clone + Send + Sync + 'static,
+    ) -> Result<Self> {
+        let session = Arc::new(Session::new(threads, wake.clone())?);
+        let mut rival = Self::with_cache(session, threads, self.cache.clone(), wake)?;
+        rival.built = self.built.clone();
+        rival.grids = self.grids.clone();
+        rival.is_fresh = true;
+        Ok(rival)
+    }
+
+    fn with_cache(
+        session: Arc<Session>,
+        threads: Option<usize>,
+        cache: Arc<VolumeCache>,
+        wake: impl Fn() + Send + Sync + 'static,
+    ) -> Result<Self> {
         let prober = Arc::new(Prober::new(session.clone(), threads)?);
         Ok(Self {
-            loader: Loader::new(prober.clone(), wake)?,
+            loader: Loader::new(prober.clone(), cache.clone(), wake)?,
+            cache,
             session,
             prober,
             built: None,
@@ -106,7 +135,8 @@ impl Engine {
             generation: 0,
             failed: 0,
             paused: false,
-            shows_steps: false,
+            extras: Extras::default(),
+            is_fresh: false,
             picture: None,
             resume: None,
         })
@@ -189,9 +219,18 @@ impl Engine {
 
     /// Whether pictures bring the tracking steps of each pixel along.
     pub fn set_shows_steps(&mut self, shows: bool) {
-        if self.shows_steps != shows {
-            self.shows_steps = shows;
-            self.session.set_shows_steps(shows);
+        self.set_extras(Extras { steps: shows, ..self.extras });
+    }
+
+    /// Whether pictures bring the variance of each pixel along.
+    pub fn set_shows_variance(&mut self, shows: bool) {
+        self.set_extras(Extras { variance: shows, ..self.extras });
+    }
+
+    fn set_extras(&mut self, extras: Extras) {
+        if self.extras != extras {
+            self.extras = extras;
+            self.session.set_extras(extras);
         }
     }
 
@@ -262,6 +301,7 @@ impl Engine {
                     }
                 });
                 self.built = Some(built);
+                self.is_fresh = false;
             }
             (Job::Open(_), Err(error)) => news.push(News::Failed(error.to_string())),
             (Job::Build(settings), Err(error)) => {
@@ -271,16 +311,20 @@ impl Engine {
         }
     }
 
-    /// Brings the render in line with the document on a film of `size` pixels. Called at the end
+    /// Brings the render in line with `settings` on a film of `size` pixels. Called at the end
     /// of a frame; gives the time after which it should be called again, if it had to wait.
     pub fn update(
         &mut self,
-        document: &Document,
+        settings: &Settings,
         size: UVec2,
         news: &mut Vec<News>,
     ) -> Option<Duration> {
-        self.start(&document.settings.film, size, news);
-        self.build(&document.settings, size, news)
+        let built = self.built.as_ref();
+        self.is_fresh &= built.is_some_and(|built| !same_scene(&built.settings, settings));
+        if !self.is_fresh {
+            self.start(&settings.film, size, news);
+        }
+        self.build(settings, size, news)
     }
 
     /// The next render's number, which is news.

@@ -99,12 +99,16 @@ struct Desk {
 }
 
 impl Loader {
-    /// Starts the thread, which starts renders by `prober`. `on_news` is called after each report
+    /// Starts the thread, which starts renders by `prober` and keeps volumes in `cache`. `on_news` is called after each report
     /// and as work proceeds.
     ///
     /// # Errors
     /// When the system refuses to start a thread.
-    pub fn new(prober: Arc<Prober>, on_news: impl Fn() + Send + Sync + 'static) -> Result<Self> {
+    pub fn new(
+        prober: Arc<Prober>,
+        cache: Arc<VolumeCache>,
+        on_news: impl Fn() + Send + Sync + 'static,
+    ) -> Result<Self> {
         let shared = Arc::new(Shared {
             desk: Mutex::default(),
             wake: Condvar::new(),
@@ -115,7 +119,7 @@ impl Loader {
         let worker = shared.clone();
         let thread = std::thread::Builder::new()
             .name("loader".to_owned())
-            .spawn(move || work(&worker, &prober, &sender, &on_news))
+            .spawn(move || work(&worker, &prober, &cache, &sender, &on_news))
             .map_err(|error| Error::io("the loader thread", error))?;
         Ok(Self { shared, reports, thread: Some(thread) })
     }
@@ -187,10 +191,10 @@ impl Shared {
 fn work(
     shared: &Shared,
     prober: &Prober,
+    cache: &VolumeCache,
     reports: &mpsc::Sender<Report>,
     on_news: &(dyn Fn() + Sync),
 ) {
-    let cache = VolumeCache::default();
     let mut grids = Grids::new();
     while let Some(Ticket { number, job, start }) = shared.next() {
         let is_latest = || shared.latest.load(Ordering::Relaxed) == number;
@@ -201,7 +205,7 @@ fn work(
             }
             is_latest()
         };
-        let result = run(&job, &cache, &progress);
+        let result = run(&job, cache, &progress);
         if !is_latest() {
             on_news();
             continue;
@@ -226,7 +230,7 @@ fn work(
         let Some(settings) = settings else { continue };
         let still_latest = |_: f32| is_latest();
         // What fails here is told when the grid is asked for.
-        if let Ok(true) = add_missing(&mut grids, &settings, &cache, &still_latest) {
+        if let Ok(true) = add_missing(&mut grids, &settings, cache, &still_latest) {
             let _ = reports.send(Report::Grids(Arc::new(grids.clone())));
             on_news();
         }
@@ -279,7 +283,8 @@ mod tests {
 
     fn loader() -> Loader {
         let session = Arc::new(Session::new(Some(1), || ()).unwrap());
-        Loader::new(Arc::new(Prober::new(session, Some(1)).unwrap()), || ()).unwrap()
+        let prober = Arc::new(Prober::new(session, Some(1)).unwrap());
+        Loader::new(prober, Arc::default(), || ()).unwrap()
     }
 
     fn wait(loader: &Loader) -> Outcome {

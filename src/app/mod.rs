@@ -4,15 +4,18 @@
 //! - `state`, `history`: what is edited, and undo; `commands`: everything that can be asked for.
 //! - `engine`, `loader`, `prober`: from edits to pictures, without ever blocking the window.
 //! - `viewport`, `navigation`, `zoom`, `display`: the picture and the hand on it.
+//! - `duel`: two strategies on one scene, side by side.
 //! - `diagnostics`: cells over the picture and maps in its place, to understand a render.
 //! - `panels`, `widgets`, `notices`, `theme`: what is around it.
 //! - `files`, `saver`, `reopen`: choosing, writing and going on from files.
 //! - `snapshots`: pictures kept in a strip, on the disk between runs.
 //! - `frame_stats`: what the window costs (`FLAMBEAU_FRAME_STATS=FILE`).
 
+mod background;
 mod commands;
 mod diagnostics;
 mod display;
+mod duel;
 mod effect;
 mod engine;
 mod files;
@@ -36,10 +39,11 @@ mod zoom;
 
 pub use commands::Command;
 pub use diagnostics::{Scale, ramp_color};
+pub use duel::Layout;
 pub use engine::Engine;
 pub use files::Dialogs;
 pub use notices::{Level, Notice, Notices};
-pub use state::{Document, Editor};
+pub use state::{Compared, Document, Editor, Side};
 pub use window::{App, Options};
 
 use crate::error::{Error, Result};

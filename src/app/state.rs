@@ -4,8 +4,9 @@ use std::time::{Duration, Instant};
 
 use super::history::{Gesture, History};
 use crate::image::tone::Tone;
+use crate::render::turns::Share;
 use crate::scene::Settings;
-use crate::transport::strategy::Tracker;
+use crate::transport::strategy::{Preset, Strategy, Tracker};
 
 /// Everything that an edit changes and undo brings back.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -16,6 +17,114 @@ pub struct Document {
     pub tone: Tone,
     /// Whether the film keeps `settings.film.size` instead of the viewport's own size.
     pub keep_size: bool,
+    /// Another strategy beside that of `settings`, if two are compared.
+    pub compared: Option<Compared>,
+}
+
+/// One of two strategies on the same scene.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Side {
+    /// The left one.
+    #[default]
+    A,
+    /// The right one.
+    B,
+}
+
+impl Side {
+    /// The other one.
+    pub fn other(self) -> Self {
+        match self {
+            Self::A => Self::B,
+            Self::B => Self::A,
+        }
+    }
+}
+
+/// Another strategy beside the one being edited.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Compared {
+    /// The side that is edited: the strategy of the document's settings.
+    pub active: Side,
+    /// The side that renders where the one strategy did before there were two.
+    pub main: Side,
+    /// The strategy of the other side.
+    pub other: Strategy,
+    /// Whether B draws other random numbers than A.
+    pub own_seed: bool,
+    /// What both sides get equal shares of.
+    pub share: Share,
+}
+
+impl Document {
+    /// Sets the strategy being edited against what artists ask of it first: everything off, or
+    /// everything on where that is off already. No-op where there are two already.
+    pub fn compare(&mut self) {
+        let strategy = self.settings.strategy;
+        let plain = strategy.with_toggles_of(Preset::Baseline);
+        let (active, other) = if strategy == plain {
+            (Side::A, strategy.with_toggles_of(Preset::Full))
+        } else {
+            (Side::B, plain)
+        };
+        let share = Share::default();
+        let begun = Compared { active, main: active, other, own_seed: false, share };
+        self.compared.get_or_insert(begun);
+    }
+
+    /// Edits the other side from now on.
+    pub fn switch_side(&mut self) {
+        if let Some(compared) = &mut self.compared {
+            compared.active = compared.active.other();
+            std::mem::swap(&mut compared.other, &mut self.settings.strategy);
+        }
+    }
+
+    /// Exchanges A and B; the strategy that is edited stays the one that is edited, and both go on
+    /// rendering.
+    pub fn swap_sides(&mut self) {
+        if let Some(compared) = &mut self.compared {
+            compared.active = compared.active.other();
+            compared.main = compared.main.other();
+        }
+    }
+
+    /// Gives the other side the strategy of the side that is edited.
+    pub fn copy_to_other_side(&mut self) {
+        if let Some(compared) = &mut self.compared {
+            compared.other = self.settings.strategy;
+        }
+    }
+
+    /// The strategy of a side.
+    pub fn strategy_of(&self, side: Side) -> Strategy {
+        match self.compared {
+            Some(Compared { active, other, .. }) if active != side => other,
+            _ => self.settings.strategy,
+        }
+    }
+
+    /// What a side renders.
+    pub fn settings_of(&self, side: Side) -> Settings {
+        let mut settings = self.settings.clone();
+        settings.strategy = self.strategy_of(side);
+        if side == Side::B && self.compared.is_some_and(|compared| compared.own_seed) {
+            settings.film.seed = settings.film.seed.wrapping_add(OTHER_SEED);
+        }
+        settings
+    }
+}
+
+/// From the seed of A to that of B, where B has its own.
+const OTHER_SEED: u64 = 1 << 32;
+
+/// What a side is called.
+pub fn strategy_name(strategy: &Strategy) -> &'static str {
+    match strategy.preset() {
+        _ if strategy.is_biased() => "ray marching",
+        Some(preset) => preset.name(),
+        None => "custom",
+    }
 }
 
 /// The document, as it was opened and as it is, with the edits between.
@@ -39,7 +148,7 @@ impl Editor {
     /// picture is shown.
     pub fn open(&mut self, settings: Settings, keep_size: bool) {
         let tone = self.document.tone;
-        self.document = Document { settings, tone, keep_size };
+        self.document = Document { settings, tone, keep_size, compared: None };
         self.opened = self.document.clone();
         self.before = self.document.clone();
         self.history = History::default();
@@ -122,6 +231,30 @@ impl Editor {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn sides_keep_their_strategies_whichever_is_edited() {
+        let full = Preset::Full.strategy();
+        let baseline = Preset::Baseline.strategy();
+        let mut document = Document::default();
+        document.compare();
+        let sides = |document: &Document| [Side::A, Side::B].map(|side| document.strategy_of(side));
+        assert_eq!(sides(&document), [baseline, full]);
+        assert_eq!(document.settings.strategy, full, "what was edited still is");
+        document.switch_side();
+        assert_eq!(sides(&document), [baseline, full]);
+        assert_eq!(document.settings.strategy, baseline);
+        document.settings.strategy.nee = true;
+        assert!(document.strategy_of(Side::A).nee);
+        document.swap_sides();
+        assert_eq!(document.strategy_of(Side::A), full);
+        assert!(document.settings.strategy.nee && document.strategy_of(Side::B).nee);
+        document.copy_to_other_side();
+        assert_eq!(document.strategy_of(Side::A), document.strategy_of(Side::B));
+        document.compared.as_mut().unwrap().own_seed = true;
+        let [a, b] = [Side::A, Side::B].map(|side| document.settings_of(side).film.seed);
+        assert_ne!(a, b);
+    }
 
     #[test]
     fn undo_brings_back_the_document_and_redo_the_edit() {

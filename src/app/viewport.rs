@@ -6,7 +6,6 @@ use std::time::{Duration, Instant};
 use egui::{CursorIcon, PointerButton, Rect, Response, Sense, Stroke, Ui};
 use glam::{UVec2, Vec2, Vec3};
 
-use super::diagnostics::Scale;
 use super::display::{self, Look};
 use super::navigation::Pose;
 use super::state::Editor;
@@ -33,6 +32,48 @@ pub struct Probe {
     pub value: [f32; 4],
     /// Mean tracking steps of a sample, where they are shown.
     pub steps: Option<f32>,
+}
+
+/// What the viewport shows.
+#[derive(Clone, Debug)]
+pub enum Shown {
+    /// No picture yet.
+    Nothing,
+    /// One picture.
+    One(Arc<Picture>, Look),
+    /// Two of the same place, the second from this share of the width on.
+    Wipe([Arc<Picture>; 2], Look, f32),
+    /// Two beside each other, zoomed and moved as one.
+    Beside([Arc<Picture>; 2], Look),
+}
+
+/// A part of the viewport with a picture.
+struct Pane<'p> {
+    picture: &'p Arc<Picture>,
+    look: Look,
+    /// What the picture is laid out in.
+    area: Rect,
+    /// What is seen of that.
+    clip: Rect,
+}
+
+impl Shown {
+    fn panes(&self, rect: Rect) -> Vec<Pane<'_>> {
+        let pane = |picture, look, area, clip| Pane { picture, look, area, clip };
+        match self {
+            Self::Nothing => Vec::new(),
+            Self::One(picture, look) => vec![pane(picture, *look, rect, rect)],
+            Self::Wipe([a, b], look, share) => {
+                let (left, right) = rect.split_left_right_at_fraction(share.clamp(0.0, 1.0));
+                vec![pane(a, *look, rect, left), pane(b, *look, rect, right)]
+            }
+            Self::Beside([a, b], look) => {
+                let (left, right) = rect.split_left_right_at_fraction(0.5);
+                let halves = [left, right].map(|half| half.shrink2(egui::vec2(1.0, 0.0)));
+                vec![pane(a, *look, halves[0], halves[0]), pane(b, *look, halves[1], halves[1])]
+            }
+        }
+    }
 }
 
 /// Where the picture lies in the window.
@@ -106,49 +147,60 @@ impl Viewport {
         self.zoom.place(picture, self.size).scale
     }
 
-    /// Shows the picture, or its steps on a scale, in the rest of `ui` and lets the hand move camera
-    /// and zoom. Gives where it lies.
-    pub fn show(
-        &mut self,
-        ui: &mut Ui,
-        editor: &mut Editor,
-        picture: Option<&Arc<Picture>>,
-        steps: Option<Scale>,
-    ) -> Option<View> {
+    /// Shows what there is in the rest of `ui` and lets the hand move camera and zoom. Gives where
+    /// the picture lies; of several the first.
+    pub fn show(&mut self, ui: &mut Ui, editor: &mut Editor, shown: &Shown) -> Option<View> {
         let rect = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(rect, Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Picture"));
         let factor = ui.pixels_per_point();
-        self.size = from_egui(rect.size()) * factor;
-        self.pointer = response.hover_pos().map(|at| from_egui(at - rect.min) * factor);
-        self.navigate(ui, &response, editor, picture.map(|picture| picture.size));
+        let panes = shown.panes(rect);
+        let under = response.hover_pos();
+        let hovered = panes
+            .iter()
+            .find(|pane| under.is_some_and(|at| pane.clip.contains(at)))
+            .or(panes.first());
+        let area = hovered.map_or(rect, |pane| pane.area);
+        self.size = from_egui(area.size()) * factor;
+        self.pointer = under.map(|at| from_egui(at - area.min) * factor);
+        self.navigate(ui, &response, editor, hovered.map(|pane| pane.picture.size));
         self.probe = None;
-        let Some(picture) = picture else {
+        if panes.is_empty() {
             ui.painter().rect_filled(rect, 0.0, color::SURROUND);
-            return None;
-        };
-        let placement = self.zoom.place(picture.size, self.size);
-        let corner = from_egui(rect.min.to_vec2()) * factor;
-        let look = match steps {
-            Some(scale) => Look::Steps(scale),
-            None => Look::Picture(editor.document.tone),
-        };
-        display::paint(ui.painter(), rect, corner, picture.clone(), placement, look);
-        self.probe = self.pointer.and_then(|at| probe(picture, placement, at));
+        }
+        for (index, pane) in panes.iter().enumerate() {
+            self.paint(ui, pane, index);
+        }
+        let hovered = hovered?;
+        let placement = self.zoom.place(hovered.picture.size, self.size);
+        self.probe = self.pointer.and_then(|at| probe(hovered.picture, placement, at));
         if let Some(probe) = self.probe
             && placement.scale >= OUTLINE_FROM
         {
-            outline(ui, rect, placement, probe.pixel, factor);
+            outline(ui, hovered.area, placement, probe.pixel, factor);
         }
         let clicked = response.clicked().then_some(self.probe).flatten().map(|probe| probe.pixel);
+        let first = panes.first()?;
+        let size = first.picture.size;
         Some(View {
-            rect,
-            placement,
+            rect: first.area,
+            placement: self.zoom.place(size, self.size),
             factor,
-            size: picture.size,
+            size,
             hovered: response.hovered(),
             clicked,
         })
+    }
+
+    fn paint(&self, ui: &Ui, pane: &Pane<'_>, index: usize) {
+        let shot = display::Shot {
+            picture: pane.picture.clone(),
+            look: pane.look,
+            placement: self.zoom.place(pane.picture.size, self.size),
+            corner: from_egui(pane.area.min.to_vec2()) * ui.pixels_per_point(),
+            pane: index,
+        };
+        display::paint(ui.painter(), pane.clip, shot);
     }
 
     fn navigate(
@@ -277,7 +329,7 @@ mod tests {
             pixels: vec![[0.0; 4], [1.0; 4], [2.0; 4], [3.0; 4]],
             steps: StepMap { mean: vec![0.0, 1.0, 4.0, 9.0], range: Some([1.0, 9.0]) },
             complete: true,
-            stats: Default::default(),
+            ..Picture::default()
         };
         let placement = Placement { scale: 4.0, corner: Vec2::new(10.0, 10.0) };
         let read = |x, y| probe(&picture, placement, Vec2::new(x, y)).map(|p| p.value[0]);

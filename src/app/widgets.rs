@@ -7,6 +7,7 @@ use egui::{
     vec2,
 };
 
+use super::commands::Command;
 use super::theme::{color, space};
 use crate::scene::keys;
 use crate::scene::settings::Color;
@@ -21,6 +22,11 @@ pub fn key_help(path: &str) -> String {
     let Some(key) = keys::find(path) else { return path.to_owned() };
     let unit = key.unit.as_ref().map_or_else(String::new, |unit| format!(" [{unit}]"));
     format!("{}\n\n{}{unit}", key.help.trim(), key.path.replace(".N.", "."))
+}
+
+/// The key of a command, as menus write it.
+pub fn key_of(ui: &Ui, command: Command) -> String {
+    ui.ctx().format_shortcut(&command.shortcut())
 }
 
 /// The first sentence of a key's help.

@@ -1,5 +1,6 @@
 //! The window: owns the state and runs a frame.
 
+mod duel;
 mod execute;
 mod layout;
 mod paths;
@@ -14,6 +15,7 @@ use glam::UVec2;
 use super::commands::Command;
 use super::diagnostics::Diagnostics;
 use super::display;
+use super::duel::Duel;
 use super::engine::{Engine, News};
 use super::files::{Answer, Dialog, Dialogs, Purpose};
 use super::frame_stats::FrameStats;
@@ -21,7 +23,7 @@ use super::notices::{Level, Notice, Notices};
 use super::panels::bars::PathBar;
 use super::saver::Saver;
 use super::snapshots::Snapshots;
-use super::state::Editor;
+use super::state::{Compared, Editor};
 use super::theme;
 use super::viewport::Viewport;
 use crate::error::Result;
@@ -47,6 +49,7 @@ pub struct Options {
 pub struct App {
     editor: Editor,
     engine: Engine,
+    duel: Duel,
     viewport: Viewport,
     diagnostics: Diagnostics,
     notices: Notices,
@@ -86,6 +89,7 @@ impl App {
         Ok(Self {
             editor: Editor::default(),
             engine,
+            duel: Duel::new(options.threads),
             viewport: Viewport::default(),
             diagnostics: Diagnostics::default(),
             notices: Notices::default(),
@@ -116,6 +120,11 @@ impl App {
         &self.engine
     }
 
+    /// The other side of a comparison.
+    pub fn duel(&self) -> &Duel {
+        &self.duel
+    }
+
     /// The messages shown.
     pub fn notices(&self) -> &Notices {
         &self.notices
@@ -127,7 +136,8 @@ impl App {
         if let Some(stats) = &mut self.stats {
             stats.frame();
         }
-        let news = self.engine.poll();
+        let mut news = self.engine.poll();
+        news.extend(self.duel.poll());
         self.take_in(&ctx, news);
         self.take_in_arrivals(&ctx);
         self.save_waiting(&ctx);
@@ -218,7 +228,22 @@ impl App {
         self.diagnostics.update(ctx, &mut self.engine);
         let Some(size) = self.film_size() else { return };
         let mut news = Vec::new();
-        if let Some(wait) = self.engine.update(&self.editor.document, size, &mut news) {
+        let document = &self.editor.document;
+        match self.duel.update(ctx, document, &mut self.engine, size) {
+            Ok(more) => news.extend(more),
+            Err(error) => {
+                self.notices.failed(error.to_string());
+                self.editor.document.compared = None;
+            }
+        }
+        let document = &self.editor.document;
+        let wait = match document.compared {
+            None => self.engine.update(&document.settings, size, &mut news),
+            Some(Compared { main, .. }) => {
+                self.engine.update(&document.settings_of(main), size, &mut news)
+            }
+        };
+        if let Some(wait) = wait {
             ctx.request_repaint_after(wait.max(Duration::from_millis(1)));
         }
         self.take_in(ctx, news);

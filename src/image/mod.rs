@@ -1,26 +1,24 @@
 //! Pictures on disk and their way to a screen.
 //!
 //! [`exr`] keeps everything and can be continued; [`npy`] is the beauty for scripts; [`png`] is what
-//! the screen shows, through the curves of [`tone`]. [`metrics`] tell how far a picture is from a
-//! [`reference`](mod@reference).
-//! the screen shows, through the curves of [`tone`]. [`ramp`] turns numbers into colors.
 //! the screen shows, through the curves of [`tone`]. [`ramp`] turns numbers into colors, [`map`] a
 //! number a pixel into a picture with its legend, [`plot`] numbers over time into curves.
+//! [`metrics`] tell how far a picture is from a [`reference`](mod@reference).
 
 mod drawing;
 pub mod exr;
 mod exr_color;
 mod exr_header;
 mod exr_layout;
+pub mod figures;
+pub mod map;
 pub mod metrics;
 pub mod npy;
 mod npy_header;
-pub mod figures;
-pub mod map;
 pub mod plot;
 pub mod png;
-pub mod reference;
 pub mod ramp;
+pub mod reference;
 pub mod tone;
 
 pub use reference::Reference;

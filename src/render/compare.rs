@@ -20,7 +20,8 @@ pub use history::NoiseHistory;
 pub use speed::SpeedUp;
 
 use super::film::Film;
-use tally::Tally;
+use super::publish::Picture;
+use tally::{Source, Tally};
 
 /// Figures of one side. Colors are linear; gray is (R + G + B) / 3; means run over the pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -59,11 +60,26 @@ impl Comparison {
     ///
     /// Works on the threads of the calling pool, with the same result for any number of them.
     pub fn of(films: [&Film; 2], cpu_seconds: [f64; 2], area: Option<Area>) -> Self {
-        let area = area.unwrap_or(Area::of(films[0].size()));
-        let area = area.within(films[0].size()).within(films[1].size());
+        Self::of_sources(films, cpu_seconds, area)
+    }
+
+    /// The same of two pictures that brought their variance along. Of their pixels it is known only
+    /// how many samples each has at least.
+    pub fn of_pictures(pictures: [&Picture; 2], area: Option<Area>) -> Self {
+        let stats = pictures.map(|picture| &picture.stats);
+        let mut comparison = Self::of_sources(pictures, stats.map(|s| s.cpu_seconds), area);
+        for (side, stats) in comparison.sides.iter_mut().zip(stats) {
+            side.samples_per_pixel = stats.samples_per_pixel;
+        }
+        comparison
+    }
+
+    fn of_sources<S: Source>(sources: [&S; 2], cpu_seconds: [f64; 2], area: Option<Area>) -> Self {
+        let area = area.unwrap_or(Area::of(sources[0].size()));
+        let area = area.within(sources[0].size()).within(sources[1].size());
         let blocks = area.blocks();
         let tallies: Vec<[Tally; 2]> =
-            blocks.par_iter().map(|block| films.map(|film| Tally::of(film, block))).collect();
+            blocks.par_iter().map(|block| sources.map(|source| Tally::of(source, block))).collect();
         let whole = [0, 1]
             .map(|side| tallies.iter().fold(Tally::default(), |sum, pair| sum.plus(&pair[side])));
         let sides = [0, 1].map(|side| whole[side].side(cpu_seconds[side]));

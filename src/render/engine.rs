@@ -3,9 +3,12 @@
 use std::sync::Arc;
 use std::time::Instant;
 
+use super::estimate::samples_per_pixel;
 use super::film::Film;
 use super::pool::{Failure, Pool};
-use super::publish::{RenderStats, StepMap, render_stats, resolve, resolve_steps};
+use super::publish::{
+    Extras, Picture, RenderStats, StepMap, render_stats, resolve, resolve_steps, resolve_variance,
+};
 use super::schedule::{Limits, Next, Schedule};
 use crate::transport::PixelSampler;
 
@@ -88,29 +91,36 @@ impl Engine {
         self.schedule.publish_due(self.seconds)
     }
 
-    /// Reads the picture into `pixels` and, where they are wanted, the steps of each pixel into
-    /// `steps`; returns its figures.
-    pub fn picture(
-        &mut self,
-        pool: &Pool,
-        pixels: &mut Vec<[f32; 4]>,
-        steps: Option<&mut StepMap>,
-    ) -> RenderStats {
+    /// Reads the film into `picture`, with the extras that are wanted; its generation stays.
+    pub fn read(&mut self, pool: &Pool, extras: Extras, picture: &mut Picture) {
         let start = Instant::now();
         let film = &self.film;
         let noise = pool.install(|| {
-            if let Some(steps) = steps {
-                resolve_steps(film, steps);
+            match extras.steps {
+                true => resolve_steps(film, &mut picture.steps),
+                false => picture.steps = StepMap::default(),
             }
-            resolve(film, pixels)
+            match extras.variance {
+                true => resolve_variance(film, &mut picture.variance),
+                false => picture.variance = Vec::new(),
+            }
+            resolve(film, &mut picture.pixels)
         });
         let cost = start.elapsed().as_secs_f64();
         self.seconds += cost;
         self.schedule.published(self.seconds, cost);
-        RenderStats {
+        (picture.size, picture.complete) = (self.film.size(), self.is_complete());
+        picture.fewest_samples = self.film.sample_range().0;
+        picture.stats = RenderStats {
+            cpu_seconds: self.cpu_seconds,
             guided_flights: self.sampler.found_flights(),
             ..render_stats(&self.film, self.seconds, noise, self.is_finished())
-        }
+        };
+    }
+
+    /// Mean number of samples of a pixel.
+    pub fn samples_per_pixel(&self) -> f64 {
+        samples_per_pixel(&self.film)
     }
 
     /// Whether the limit is reached.

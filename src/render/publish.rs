@@ -8,7 +8,7 @@ use super::film::Film;
 use super::schedule::representative;
 
 /// A finished image of an unfinished render.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Picture {
     /// The caller's number of the request it belongs to.
     pub generation: u64,
@@ -18,10 +18,31 @@ pub struct Picture {
     pub pixels: Vec<[f32; 4]>,
     /// What the samples of each pixel cost; empty unless asked for.
     pub steps: StepMap,
+    /// Samples that every pixel has.
+    pub fewest_samples: u32,
+    /// Variance of the gray mean of each pixel, and the variance of that; row 0 on top, NaN below two
+    /// samples; empty unless asked for.
+    pub variance: Vec<[f32; 2]>,
     /// Whether every pixel has at least one sample of its own.
     pub complete: bool,
     /// Figures at the time it was made.
     pub stats: RenderStats,
+}
+
+/// What a picture brings along beside its light.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Extras {
+    /// The tracking steps of its pixels.
+    pub steps: bool,
+    /// The variance of its pixels.
+    pub variance: bool,
+}
+
+impl Extras {
+    /// Whether it has anything that `other` has not.
+    pub fn adds_to(self, other: Self) -> bool {
+        self.steps && !other.steps || self.variance && !other.variance
+    }
 }
 
 /// Mean tentative collisions of a sample of each pixel.
@@ -40,6 +61,8 @@ pub struct RenderStats {
     pub samples_per_pixel: f64,
     /// Seconds of rendering, pauses not counted.
     pub seconds: f64,
+    /// CPU time that the threads have spent sampling, in seconds.
+    pub cpu_seconds: f64,
     /// Tentative collisions so far.
     pub tracking_steps: u64,
     /// Paths traced so far.
@@ -101,6 +124,21 @@ pub fn resolve_steps(film: &Film, steps: &mut StepMap) {
     steps.range = (range[1] > 0.0).then_some(range);
 }
 
+/// Reads the variance of the gray mean of every pixel and the variance of that into `variance`, which gets the size of the
+/// film. Runs on the threads of the calling pool.
+pub fn resolve_variance(film: &Film, variance: &mut Vec<[f32; 2]>) {
+    let size = film.size();
+    variance.resize(size.x as usize * size.y as usize, [f32::NAN; 2]);
+    variance.par_chunks_mut(size.x as usize).enumerate().for_each(|(y, line)| {
+        for (x, out) in line.iter_mut().enumerate() {
+            let pixel = PixelEstimate::of(film, UVec2::new(x as u32, y as u32));
+            let variance = pixel
+                .and_then(|pixel| pixel.gray_variance().zip(pixel.gray_variance_uncertainty()));
+            *out = variance.map_or([f32::NAN; 2], |(of, again)| [of as f32, again as f32]);
+        }
+    });
+}
+
 fn resolve_line(film: &Film, y: u32, line: &mut [[f32; 4]]) -> LineStats {
     let mut stats = LineStats::default();
     // Neighbors that show the same block are read once.
@@ -134,6 +172,7 @@ pub(crate) fn render_stats(
     RenderStats {
         samples_per_pixel: samples_per_pixel(film),
         seconds,
+        cpu_seconds: 0.0,
         tracking_steps: film.totals.tracking_steps,
         paths: film.totals.paths,
         non_finite: film.totals.non_finite,

@@ -1,6 +1,7 @@
 //! Rendering behind a window: a thread of its own that takes the latest request, refines it and
 //! hands over pictures. No call here waits for sampling.
 
+mod sharing;
 mod worker;
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -12,10 +13,12 @@ use glam::UVec2;
 
 use super::film::Film;
 use super::pool::{Failure, Pool, Priority};
-use super::publish::Picture;
+use super::publish::{Extras, Picture};
 use crate::error::{Error, Result};
 use crate::transport::PixelSampler;
 use worker::Worker;
+
+pub use sharing::{Seat, Sharing};
 
 /// Something to render.
 pub struct Request {
@@ -58,7 +61,8 @@ struct Mail {
     improvement: Option<Improvement>,
     snapshots: Vec<Sender<Film>>,
     paused: bool,
-    shows_steps: bool,
+    extras: Extras,
+    seat: Option<Seat>,
 }
 
 /// What becomes of a provisional request.
@@ -136,11 +140,16 @@ impl Session {
         self.shared.post(|mail| mail.paused = paused);
     }
 
-    /// Whether pictures bring the steps of each pixel along. They cost a little to read, so they are
-    /// left out unless asked for; asking brings a new picture of what there is, also while paused
-    /// or finished.
-    pub fn set_shows_steps(&self, shows: bool) {
-        self.shared.post(|mail| mail.shows_steps = shows);
+    /// What pictures bring along beside their light. It costs a little to read, so it is left out
+    /// unless asked for; asking brings a new picture of what there is, also while paused or
+    /// finished.
+    pub fn set_extras(&self, extras: Extras) {
+        self.shared.post(|mail| mail.extras = extras);
+    }
+
+    /// Takes turns with the session of the other seat, or has the machine for itself again.
+    pub fn take_seat(&self, seat: Option<Seat>) {
+        self.shared.post(|mail| mail.seat = seat);
     }
 
     /// The latest picture. After [`Self::start`] the old one stays until the new request has its

@@ -3,6 +3,7 @@
 //! Without a graphics adapter the tests are skipped with a message, unless
 //! `FLAMBEAU_REQUIRE_WINDOW_TESTS=1` says that there has to be one.
 
+mod compare;
 mod snapshots;
 
 use std::path::{Path, PathBuf};

@@ -1,10 +1,10 @@
 //! The strongest cells of a scene's volumes, gathered behind the window's back.
 
+use crate::app::background::Background;
 use std::sync::Arc;
 
 use glam::Vec3A;
 
-use super::background::Background;
 use super::{CellValue, Scale};
 use crate::math::Aabb;
 use crate::transport::Scene;

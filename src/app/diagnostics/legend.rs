@@ -1,11 +1,16 @@
 //! What the colors mean, in a corner of the picture.
 
-use egui::{Align, Frame, Label, Layout, Margin, Rect, RichText, Ui, UiBuilder, pos2, vec2};
+use egui::{
+    Align, Color32, Frame, Label, Layout, Margin, Rect, RichText, Ui, UiBuilder, pos2, vec2,
+};
 
 use super::cells::Cells;
-use super::{CellValue, Scale, overlay};
+use super::{CellValue, Scale, overlay, ramp_color};
+use crate::app::duel::maps::{self, ColorKey, Difference, MapKind, Noise};
+use crate::app::state::Side;
 use crate::app::theme::{color, space};
 use crate::app::widgets::significant;
+use crate::image::tone::srgb_from_linear;
 
 /// Room that a legend takes.
 const SIZE: egui::Vec2 = vec2(236.0, 82.0);
@@ -17,7 +22,7 @@ const OPACITY: f32 = 0.85;
 /// One ramp with its numbers.
 pub struct Legend {
     title: &'static str,
-    scale: Option<Scale>,
+    colors: Option<ColorKey>,
     note: String,
 }
 
@@ -25,7 +30,26 @@ impl Legend {
     /// Of the map of tracking steps.
     pub fn of_steps(scale: Scale) -> Self {
         let note = "Black: no steps at all".to_owned();
-        Self { title: "Tracking steps per sample", scale: Some(scale), note }
+        Self { title: "Tracking steps per sample", colors: Some(ColorKey::Ramp(scale)), note }
+    }
+
+    /// Of a map of two pictures.
+    pub fn of_map(kind: MapKind, colors: ColorKey) -> Self {
+        let (title, note) = match kind {
+            MapKind::Difference(Difference::Signed) => {
+                ("B - A, gray", "Blue: B is darker, orange: brighter")
+            }
+            MapKind::Difference(Difference::Absolute) => ("|B - A|, gray", "Black: no difference"),
+            MapKind::Difference(Difference::Relative) => {
+                ("|B - A|, relative, gray", "Black: no difference")
+            }
+            MapKind::Noise(Noise::Of(Side::A)) => ("Standard error of A, gray", "Black: not known"),
+            MapKind::Noise(Noise::Of(Side::B)) => ("Standard error of B, gray", "Black: not known"),
+            MapKind::Noise(Noise::Ratio) => {
+                ("Noise of B over that of A", "Blue: B is less noisy, orange: more")
+            }
+        };
+        Self { title, colors: Some(colors), note: note.to_owned() }
     }
 
     /// Of the cells over the picture.
@@ -44,7 +68,7 @@ impl Legend {
             _ if shown == total => format!("All {total} {what}s"),
             _ => format!("The strongest {shown} of {total} {what}s"),
         };
-        Self { title, scale: cells.scale(), note }
+        Self { title, colors: cells.scale().map(ColorKey::Ramp), note }
     }
 }
 
@@ -75,26 +99,44 @@ pub fn show(ui: &mut Ui, area: Rect, legends: &[Legend]) {
 fn contents(ui: &mut Ui, legend: &Legend) {
     ui.spacing_mut().item_spacing.y = space::TIGHT;
     ui.label(RichText::new(legend.title).color(color::TEXT_STRONG));
-    if let Some(scale) = legend.scale {
+    if let Some(colors) = legend.colors {
         let (bar, _) =
             ui.allocate_exact_size(vec2(ui.available_width(), BAR), egui::Sense::empty());
-        ui.painter().add(overlay::bar(bar));
-        numbers(ui, scale);
+        let (color, ends) = match colors {
+            ColorKey::Ramp(scale) => {
+                (ramp_color as fn(f32) -> Color32, [scale.low, scale.middle(), scale.high])
+            }
+            ColorKey::Diverging { reach, factors: true } => {
+                (diverging as fn(f32) -> Color32, [1.0 / reach, 1.0, reach])
+            }
+            ColorKey::Diverging { reach, factors: false } => {
+                (diverging as fn(f32) -> Color32, [-reach, 0.0, reach])
+            }
+        };
+        ui.painter().add(overlay::bar(bar, color));
+        numbers(ui, ends);
     }
     ui.label(RichText::new(&legend.note).small().color(color::TEXT_DIM));
 }
 
-/// The ends of the scale and its middle.
-fn numbers(ui: &mut Ui, scale: Scale) {
+/// A color of a diverging scale at a place in 0..=1.
+fn diverging(place: f32) -> Color32 {
+    let [r, g, b, _] = maps::diverging(2.0 * place - 1.0);
+    let code = |linear: f32| (srgb_from_linear(linear) * 255.0).round() as u8;
+    Color32::from_rgb(code(r), code(g), code(b))
+}
+
+/// The numbers at the ends of a scale and in its middle.
+fn numbers(ui: &mut Ui, [low, middle, high]: [f32; 3]) {
     let number = |value: f32| {
         let text = RichText::new(significant(f64::from(value))).small().color(color::TEXT);
         Label::new(text)
     };
     ui.columns(3, |columns| {
-        columns[0].add(number(scale.low));
-        columns[1].vertical_centered(|ui| ui.add(number(scale.middle())));
+        columns[0].add(number(low));
+        columns[1].vertical_centered(|ui| ui.add(number(middle)));
         columns[2].with_layout(Layout::right_to_left(Align::Min), |ui| {
-            ui.add(number(scale.high));
+            ui.add(number(high));
         });
     });
 }

@@ -107,12 +107,12 @@ fn in_front(line: [Vec3A; 2], near: f32) -> Option<[Vec3A; 2]> {
     }
 }
 
-/// The ramp as a bar, from left to right.
-pub fn bar(rect: Rect) -> Mesh {
+/// The colors of a scale as a bar, from left to right; `color` gives that of a place in 0..=1.
+pub fn bar(rect: Rect, color: fn(f32) -> Color32) -> Mesh {
     let mut mesh = Mesh::default();
     for index in 0..=ramp::STOPS as u32 - 1 {
         let place = index as f32 / (ramp::STOPS - 1) as f32;
-        let color: Color32 = ramp::color(place);
+        let color = color(place);
         let x = egui::lerp(rect.x_range(), place);
         mesh.colored_vertex(egui::pos2(x, rect.top()), color);
         mesh.colored_vertex(egui::pos2(x, rect.bottom()), color);

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use egui::{Color32, Context, CursorIcon, Grid, Label, RichText, Sense, Stroke, Ui, pos2, vec2};
 use glam::{UVec2, Vec2};
 
-use super::background::Background;
 use super::{plots, to_window};
+use crate::app::background::Background;
 use crate::app::engine::Engine;
 use crate::app::theme::{color, space};
 use crate::app::viewport::View;

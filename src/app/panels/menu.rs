@@ -17,6 +17,10 @@ const VIEW: [&[Command]; 3] = [
     &[Command::ExposureUp, Command::ExposureDown, Command::NextToneCurve],
     &[Command::FoldPanels],
 ];
+const COMPARE: [&[Command]; 2] = [
+    &[Command::Compare, Command::NextLayout],
+    &[Command::SwitchSide, Command::SwapSides, Command::CopySide],
+];
 const SNAPSHOTS: [&[Command]; 3] = [
     &[Command::KeepSnapshot, Command::FoldStrip],
     &[Command::PreviousSnapshot, Command::NextSnapshot, Command::LivePicture],
@@ -31,6 +35,7 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>, title: &str) {
         edit_menu(ui, panel);
         menu(ui, panel, "Render", &RENDER);
         menu(ui, panel, "View", &VIEW);
+        menu(ui, panel, "Compare", &COMPARE);
         menu(ui, panel, "Snapshots", &SNAPSHOTS);
         menu(ui, panel, "Help", &HELP);
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {

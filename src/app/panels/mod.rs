@@ -3,11 +3,13 @@
 pub mod advanced;
 pub mod bars;
 pub mod camera;
+pub mod compare;
 pub mod diagnostics;
 pub mod emission;
 pub mod film;
 pub mod help;
 pub mod menu;
+pub mod noise_plot;
 pub mod status;
 pub mod strategy;
 pub mod strip;
@@ -17,6 +19,7 @@ use egui::{CollapsingHeader, RichText, Ui};
 
 use super::commands::Command;
 use super::diagnostics::Wanted;
+use super::duel::Duel;
 use super::loader::Grids;
 use super::state::Editor;
 use super::theme::color;
@@ -31,6 +34,8 @@ pub struct Panel<'a> {
     pub notes: &'a [String],
     /// How often probes are asked in the picture, relative to what they propose, if that is known.
     pub guided_flights: Option<f32>,
+    /// The other side of a comparison.
+    pub duel: &'a Duel,
     /// What is shown to understand the render.
     pub wanted: &'a mut Wanted,
     /// Commands that buttons ask for.

@@ -2,7 +2,7 @@
 
 use egui::{CollapsingHeader, Layout, RichText, Ui};
 
-use super::{Panel, advanced, explain, section};
+use super::{Panel, advanced, compare, explain, section};
 use crate::app::commands::Command;
 use crate::app::effect::{Toggle, no_effect};
 use crate::app::theme::{color, space};
@@ -41,6 +41,7 @@ pub fn toggle_of(command: Command) -> Option<Toggle> {
 /// Shows the section.
 pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
     section(ui, "Strategy", |ui| {
+        compare::sides(ui, panel);
         presets(ui, panel);
         if panel.editor.document.settings.strategy.is_biased() {
             let text = "Biased: ray marching is on (Advanced).";

@@ -17,7 +17,7 @@ use crate::image::exr;
 use crate::image::tone::Tone;
 use crate::render::estimate::samples_per_pixel;
 use crate::render::publish::resolve;
-use crate::render::{Film, Picture, RenderStats, StepMap};
+use crate::render::{Film, Picture};
 use crate::scene::Settings;
 
 /// What was left behind is removed at a start this much later; another window may be at work on
@@ -262,14 +262,7 @@ fn read(store: &Store, entry: &Entry) -> Result<Arc<Picture>> {
 
 /// A picture without pixels yet.
 fn blank(size: &[u32; 2]) -> Picture {
-    Picture {
-        generation: 0,
-        size: (*size).into(),
-        pixels: Vec::new(),
-        steps: StepMap::default(),
-        complete: true,
-        stats: RenderStats { finished: true, ..RenderStats::default() },
-    }
+    Picture { size: (*size).into(), pixels: Vec::new(), complete: true, ..Picture::default() }
 }
 
 /// Without a place nothing can be kept, and nothing else can be asked for.

@@ -79,12 +79,10 @@ mod tests {
     fn picture(size: UVec2) -> Picture {
         let row = |y: u32| (0..size.x).map(move |x| [(x % 2) as f32, y as f32, 0.5, 1.0]);
         Picture {
-            generation: 0,
             size,
             pixels: (0..size.y).flat_map(row).collect(),
-            steps: Default::default(),
             complete: true,
-            stats: Default::default(),
+            ..Picture::default()
         }
     }
 

@@ -23,7 +23,11 @@ impl App {
             Command::Undo => self.editor.undo(),
             Command::Redo => self.editor.redo(),
             Command::PauseResume => self.engine.set_paused(!self.engine.paused()),
-            Command::Restart => self.engine.restart(),
+            Command::Restart => {
+                self.engine.restart();
+                self.duel.restart();
+            }
+            Command::NextLayout => self.duel.layout = self.duel.layout.next(),
             Command::FrameVolume => self.frame_volume(),
             Command::FitPicture => self.viewport.zoom = Default::default(),
             Command::ZoomToPixels => {
@@ -56,6 +60,25 @@ impl App {
                     ToneCurve::Filmic => ToneCurve::Linear,
                 };
                 "tone curve"
+            }
+            Command::Compare => {
+                match document.compared {
+                    None => document.compare(),
+                    Some(_) => document.compared = None,
+                }
+                "comparison"
+            }
+            Command::SwitchSide => {
+                document.switch_side();
+                "edited side"
+            }
+            Command::SwapSides => {
+                document.swap_sides();
+                "swap of A and B"
+            }
+            Command::CopySide => {
+                document.copy_to_other_side();
+                "copy to the other side"
             }
             other => {
                 let Some(toggle) = strategy::toggle_of(other) else { return };

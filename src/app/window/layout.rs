@@ -7,10 +7,14 @@ use glam::UVec2;
 
 use super::App;
 use crate::app::commands::Command;
+use crate::app::diagnostics::Legend;
+use crate::app::display::Look;
 use crate::app::files::typed;
 use crate::app::panels::bars::{self, Typed};
 use crate::app::panels::{self, Panel};
+use crate::app::state::Document;
 use crate::app::theme::{self, color, space};
+use crate::app::viewport::Shown;
 
 impl App {
     /// Shows everything and gathers the commands that it is asked for.
@@ -18,11 +22,13 @@ impl App {
         let title = self.title();
         let plain = self.panel_frame();
         let grids = self.engine.grids().clone();
+        let edited = self.duel.edited(&self.engine);
         let mut panel = Panel {
             editor: &mut self.editor,
             grids: &grids,
             notes: &self.notes,
-            guided_flights: self.engine.picture().and_then(|p| p.stats.guided_flights),
+            guided_flights: edited.picture().and_then(|picture| picture.stats.guided_flights),
+            duel: &self.duel,
             wanted: &mut self.diagnostics.wanted,
             commands,
         };
@@ -32,7 +38,7 @@ impl App {
         });
         let bar = plain.inner_margin(Margin::symmetric(8, 0));
         egui::Panel::bottom("status").exact_size(space::STATUS).frame(bar).show(ui, |ui| {
-            panels::status::show(ui, &mut panel, &self.engine, &self.viewport, &self.snapshots);
+            panels::status::show(ui, &mut panel, edited, &self.viewport, &self.snapshots);
         });
         if !self.folded {
             let film = self.viewport.film_size();
@@ -60,22 +66,43 @@ impl App {
         self.path_bar_row(ui);
         drop_row(ui);
         self.progress_row(ui);
+        self.compare_row(ui);
         if !self.notices.list().is_empty() {
             egui::Panel::bottom("notices")
                 .frame(theme::panel_frame())
                 .show(ui, |ui| self.notices.show(ui));
         }
         let picture = self.shown_picture().cloned();
-        let steps = picture.as_deref().and_then(|picture| self.diagnostics.step_scale(picture));
+        let shown = self.shown(ui);
+        let is_live = self.snapshots.picture().is_none();
         egui::CentralPanel::no_frame().show(ui, |ui| {
-            let view = self.viewport.show(ui, &mut self.editor, picture.as_ref(), steps);
+            let rect = ui.available_rect_before_wrap();
+            let view = self.viewport.show(ui, &mut self.editor, &shown);
             // What is drawn over the picture is about the live one.
-            if let (Some(view), Some(picture)) = (view, &picture)
-                && self.snapshots.picture().is_none()
-            {
-                self.diagnostics.show(ui, view, picture, &self.editor.document.settings);
+            if !is_live {
+                return;
             }
+            if let (Some(view), Some(picture)) = (view, &picture) {
+                let map = self.duel.map().map(|map| Legend::of_map(map.kind, map.key));
+                self.diagnostics.show(ui, view, picture, &self.editor.document.settings, map);
+            }
+            self.compare_marks(ui, rect);
         });
+    }
+
+    /// What the picture area shows.
+    fn shown(&self, ui: &Ui) -> Shown {
+        let Document { tone, compared, .. } = &self.editor.document;
+        if let Some(stored) = self.snapshots.picture() {
+            return Shown::One(stored.clone(), Look::Picture(*tone));
+        }
+        let Some(picture) = self.engine.picture() else { return Shown::Nothing };
+        if let Some(scale) = self.diagnostics.step_scale(picture) {
+            return Shown::One(picture.clone(), Look::Steps(scale));
+        }
+        compared
+            .and_then(|compared| self.duel.shown(ui.ctx(), &self.engine, *tone, compared.active))
+            .unwrap_or_else(|| Shown::One(picture.clone(), Look::Picture(*tone)))
     }
 
     fn path_bar_row(&mut self, ui: &mut Ui) {

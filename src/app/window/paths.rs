@@ -55,16 +55,17 @@ impl App {
             return self.stored_content(purpose);
         }
         let document = &self.editor.document;
-        let settings = self.engine.rendered()?;
+        let engine = self.duel.edited(&self.engine);
+        let settings = engine.rendered()?;
         match purpose {
             Purpose::Open => None,
             Purpose::SaveExr => Some(Content::Exr {
-                film: self.engine.session().snapshot(),
+                film: engine.session().snapshot(),
                 settings: settings.clone(),
-                seconds: self.engine.picture().map_or(0.0, |picture| picture.stats.seconds),
+                seconds: engine.picture().map_or(0.0, |picture| picture.stats.seconds),
             }),
             Purpose::SavePng => {
-                Some(Content::Png { film: self.engine.session().snapshot(), tone: document.tone })
+                Some(Content::Png { film: engine.session().snapshot(), tone: document.tone })
             }
             Purpose::SaveScene => {
                 // A film of the window's size is written as that size, so the picture is the same.

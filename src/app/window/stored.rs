@@ -30,8 +30,8 @@ impl App {
     }
 
     fn keep(&mut self) {
-        let (Some(settings), Some(picture)) = (self.engine.rendered(), self.engine.picture())
-        else {
+        let engine = self.duel.edited(&self.engine);
+        let (Some(settings), Some(picture)) = (engine.rendered(), engine.picture()) else {
             self.notices.failed("There is no picture to keep yet.");
             return;
         };
@@ -45,7 +45,7 @@ impl App {
             seconds: picture.stats.seconds,
             tone: self.editor.document.tone,
             name: self.snapshots.strip.free_name(&name),
-            film: self.engine.session().snapshot(),
+            film: engine.session().snapshot(),
         };
         self.snapshots.keep(keep);
     }

@@ -1,8 +1,11 @@
 //! Sums over the pixels of one film.
 
+use glam::UVec2;
+
 use super::{Area, Side};
 use crate::render::estimate::{PixelEstimate, gray};
 use crate::render::film::Film;
+use crate::render::publish::Picture;
 
 /// What is summed over some pixels of one side.
 #[derive(Clone, Copy, Debug)]
@@ -39,30 +42,83 @@ impl Default for Tally {
     }
 }
 
+/// What pixels are read from.
+pub(super) trait Source: Sync {
+    /// Width and height.
+    fn size(&self) -> UVec2;
+
+    /// Samples of a pixel, or fewer.
+    fn samples(&self, pixel: UVec2) -> u32;
+
+    /// What the samples of a pixel say, once it has any.
+    fn estimate(&self, pixel: UVec2) -> Option<Estimate>;
+}
+
+/// What the samples of a pixel say.
+pub(super) struct Estimate {
+    mean: [f64; 3],
+    /// Variance of the gray mean, and the variance of that.
+    variance: Option<(f64, f64)>,
+}
+
+impl Source for Film {
+    fn size(&self) -> UVec2 {
+        self.size()
+    }
+
+    fn samples(&self, pixel: UVec2) -> u32 {
+        self.samples(pixel)
+    }
+
+    fn estimate(&self, pixel: UVec2) -> Option<Estimate> {
+        let pixel = PixelEstimate::of(self, pixel)?;
+        let variance = pixel.gray_variance().zip(pixel.gray_variance_uncertainty());
+        Some(Estimate { mean: pixel.mean(), variance })
+    }
+}
+
+/// Pixels without samples show their block and count as if they had none of their own.
+impl Source for Picture {
+    fn size(&self) -> UVec2 {
+        self.size
+    }
+
+    fn samples(&self, _: UVec2) -> u32 {
+        self.fewest_samples
+    }
+
+    fn estimate(&self, pixel: UVec2) -> Option<Estimate> {
+        let index = pixel.y as usize * self.size.x as usize + pixel.x as usize;
+        let [r, g, b, _] = *self.pixels.get(index)?;
+        let variance = self.variance.get(index).filter(|variance| variance[0].is_finite());
+        let variance = variance.map(|[of, again]| (f64::from(*of), f64::from(*again)));
+        let mean = [r, g, b].map(f64::from);
+        (self.fewest_samples > 0 || variance.is_some()).then_some(Estimate { mean, variance })
+    }
+}
+
 impl Tally {
-    /// Over the pixels of `area`, all of which are on the film.
-    pub fn of(film: &Film, area: &Area) -> Self {
+    /// Over the pixels of `area`, all of which the source has.
+    pub fn of(source: &impl Source, area: &Area) -> Self {
         let mut tally = Self::default();
         for pixel in area.iter() {
-            let samples = film.samples(pixel);
+            let samples = source.samples(pixel);
             tally.pixels += 1;
             tally.samples += u64::from(samples);
             tally.fewest_samples = tally.fewest_samples.min(samples);
-            if let Some(estimate) = PixelEstimate::of(film, pixel) {
+            if let Some(estimate) = source.estimate(pixel) {
                 tally.add(&estimate);
             }
         }
         tally
     }
 
-    fn add(&mut self, pixel: &PixelEstimate<'_>) {
-        let mean = pixel.mean();
+    fn add(&mut self, pixel: &Estimate) {
         self.sampled += 1;
-        (0..3).for_each(|c| self.rgb[c] += mean[c]);
-        let variance = pixel.gray_variance().zip(pixel.gray_variance_uncertainty());
-        if let Some((variance, uncertainty)) = variance {
+        (0..3).for_each(|c| self.rgb[c] += pixel.mean[c]);
+        if let Some((variance, uncertainty)) = pixel.variance {
             self.measured += 1;
-            self.gray += gray(mean);
+            self.gray += gray(pixel.mean);
             self.variance += variance;
             self.uncertainty += uncertainty;
             self.largest_variance = self.largest_variance.max(variance);

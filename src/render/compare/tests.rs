@@ -195,3 +195,33 @@ fn rounding_is_no_difference() {
     let brighter = level(1, 0.1001, 0.0, 13);
     assert_eq!(verdict(&a, &brighter, ALARM), Verdict::Differ);
 }
+
+/// What pictures say of themselves is what their films say.
+#[test]
+fn pictures_tell_the_same_as_their_films() {
+    use crate::render::publish::{Picture, resolve, resolve_variance};
+    let films = [level(0, 1.0, 0.9, 16), level(1, 1.0, 0.3, 16)];
+    let seconds = [2.0, 1.0];
+    let pictures = [0, 1].map(|side| {
+        let film: &Film = &films[side];
+        let mut picture = Picture { size: SIZE, fewest_samples: 16, ..Picture::default() };
+        picture.stats.cpu_seconds = seconds[side];
+        picture.stats.samples_per_pixel = 16.0;
+        resolve(film, &mut picture.pixels);
+        resolve_variance(film, &mut picture.variance);
+        picture
+    });
+    for area in [None, Some(Area { first: UVec2::new(3, 4), size: UVec2::new(9, 11) })] {
+        let of_films = Comparison::of([&films[0], &films[1]], seconds, area);
+        let of_pictures = Comparison::of_pictures([&pictures[0], &pictures[1]], area);
+        assert_eq!(of_pictures.agreement.verdict, of_films.agreement.verdict);
+        let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-4;
+        for (one, other) in of_pictures.sides.iter().zip(&of_films.sides) {
+            assert!(near(one.variance_of_mean.unwrap(), other.variance_of_mean.unwrap()));
+            assert!(near(one.variance_error.unwrap(), other.variance_error.unwrap()));
+            assert_eq!(one.samples_per_pixel, other.samples_per_pixel);
+        }
+        let [a, b] = [of_pictures, of_films].map(|comparison| comparison.speed_up.unwrap().ratio);
+        assert!(near(a, b), "{a} for {b}");
+    }
+}

@@ -7,19 +7,22 @@ use std::time::{Duration, Instant};
 
 use glam::UVec2;
 
-use super::{Improvement, Mail, Request, Resume, Shared, lock};
+use super::{Improvement, Mail, Request, Resume, Seat, Shared, lock};
 use crate::error::Result;
 use crate::render::engine::{Engine, Step};
 use crate::render::film::Film;
 use crate::render::headless::same_size;
 use crate::render::pool::{Failure, Pool};
-use crate::render::publish::{Picture, StepMap};
+use crate::render::publish::{Extras, Picture};
 use crate::render::schedule::Limits;
+use crate::render::turns::Account;
 use crate::transport::PixelSampler;
 
 /// How long a request without a picture is left to get one when the next already waits. Otherwise
 /// a drag whose edits come faster than coarse pictures would show nothing until it ends.
 const PATIENCE: Duration = Duration::from_millis(250);
+/// How long it waits before it asks for its turn again. Turns are twenty times as long.
+const TURN: Duration = Duration::from_millis(1);
 
 /// The render thread.
 pub(super) struct Worker {
@@ -28,9 +31,11 @@ pub(super) struct Worker {
     /// The epoch of the last letter read.
     epoch: u64,
     paused: bool,
-    shows_steps: bool,
-    /// Whether steps were asked for since the last picture.
-    owes_steps: bool,
+    extras: Extras,
+    /// Whether extras were asked for since the last picture.
+    owes_extras: bool,
+    /// Where it takes turns with another session.
+    seat: Option<Seat>,
     job: Option<Active>,
     seconds_per_path: Option<f64>,
     snapshots: Vec<Sender<Film>>,
@@ -51,6 +56,16 @@ struct Active {
     held_below: u64,
     /// Seconds that the film took which it goes on from, if it does.
     resumed_at: Option<f64>,
+}
+
+/// What the render thread waits for.
+#[derive(Clone, Copy, PartialEq)]
+enum Wait {
+    Nothing,
+    /// The next letter.
+    Letter,
+    /// Its turn, or the next letter.
+    Turn,
 }
 
 /// How a request stands that may be improved.
@@ -106,8 +121,9 @@ impl Worker {
             pool,
             epoch: 0,
             paused: false,
-            shows_steps: false,
-            owes_steps: false,
+            extras: Extras::default(),
+            owes_extras: false,
+            seat: None,
             job: None,
             seconds_per_path: None,
             snapshots: Vec::new(),
@@ -117,31 +133,70 @@ impl Worker {
 
     /// Until the session ends.
     pub(super) fn run(mut self) {
-        let mut idle = true;
-        while self.read_mail(idle) {
+        let mut wait = Wait::Letter;
+        while self.read_mail(wait) {
             self.serve_snapshots();
-            self.serve_steps();
-            idle = self.work();
+            self.serve_extras();
+            wait = self.take_turn();
+        }
+        self.take_seat(None);
+    }
+
+    /// Works if it is this session's turn.
+    fn take_turn(&mut self) -> Wait {
+        let Some(seat) = self.seat.clone() else { return self.work() };
+        if !seat.begin(self.account()) {
+            return Wait::Turn;
+        }
+        let wait = self.work();
+        match wait {
+            Wait::Letter => seat.leave(),
+            _ => seat.end(self.account()),
+        }
+        wait
+    }
+
+    /// What the present request has had of the machine.
+    fn account(&self) -> Account {
+        let engine = self.job.as_ref().map(|job| &job.engine);
+        Account {
+            cpu_seconds: engine.map_or(0.0, Engine::cpu_seconds),
+            samples: engine.map_or(0.0, Engine::samples_per_pixel),
+            closed: false,
         }
     }
 
-    /// Takes the mail, waiting for some when `idle`. Returns false when the session ends.
-    fn read_mail(&mut self, idle: bool) -> bool {
+    fn take_seat(&mut self, seat: Option<Seat>) {
+        if let Some(old) = std::mem::replace(&mut self.seat, seat) {
+            old.leave();
+        }
+    }
+
+    /// Takes the mail, after some waiting. Returns false when the session ends.
+    fn read_mail(&mut self, wait: Wait) -> bool {
         let shared = Arc::clone(&self.shared);
         let mut mail = lock(&shared.mail);
-        if idle {
-            let nothing_new = |_: &mut Mail| shared.epoch.load(Ordering::Relaxed) == self.epoch;
-            let waited = shared.bell.wait_while(mail, nothing_new);
-            mail = waited.unwrap_or_else(PoisonError::into_inner);
-        }
+        let nothing_new = |_: &mut Mail| shared.epoch.load(Ordering::Relaxed) == self.epoch;
+        mail = match wait {
+            Wait::Nothing => mail,
+            Wait::Letter => {
+                let waited = shared.bell.wait_while(mail, nothing_new);
+                waited.unwrap_or_else(PoisonError::into_inner)
+            }
+            Wait::Turn => {
+                // Also when a letter waits that must wait longer, for the first picture.
+                shared.bell.wait_timeout(mail, TURN).unwrap_or_else(PoisonError::into_inner).0
+            }
+        };
         if shared.quit.load(Ordering::Relaxed) {
             return false;
         }
         shared.improved.store(false, Ordering::Relaxed);
         self.snapshots.append(&mut mail.snapshots);
         self.paused = mail.paused;
-        self.owes_steps |= mail.shows_steps && !self.shows_steps;
-        self.shows_steps = mail.shows_steps;
+        self.owes_extras |= mail.extras.adds_to(self.extras);
+        self.extras = mail.extras;
+        let seat = mail.seat.clone();
         if self.job.as_ref().is_some_and(Active::is_owed_a_picture) && mail.request.is_some() {
             // The epoch stays the old one: the letter is still unread.
             return true;
@@ -149,6 +204,7 @@ impl Worker {
         let (request, improvement) = (mail.request.take(), mail.improvement.take());
         self.epoch = shared.epoch.load(Ordering::Relaxed);
         drop(mail);
+        self.take_seat(seat);
         if let Some(request) = request {
             self.begin(request);
         }
@@ -241,20 +297,20 @@ impl Worker {
         }
     }
 
-    /// Publishes what there is once more when steps were asked for; a request without a picture
+    /// Publishes what there is once more when extras were asked for; a request without a picture
     /// brings them with its first.
-    fn serve_steps(&mut self) {
-        let owed = std::mem::take(&mut self.owes_steps);
+    fn serve_extras(&mut self) {
+        let owed = std::mem::take(&mut self.owes_extras);
         if owed && self.job.as_ref().is_some_and(Active::may_show) {
             self.publish();
         }
     }
 
-    /// One step of the render; returns whether there is nothing to do until the next letter.
-    fn work(&mut self) -> bool {
-        let Some(job) = &mut self.job else { return true };
+    /// One step of the render; returns what there is to wait for after it.
+    fn work(&mut self) -> Wait {
+        let Some(job) = &mut self.job else { return Wait::Letter };
         if job.failed || job.holds() && !job.may_show() {
-            return true;
+            return Wait::Letter;
         }
         let (shared, epoch, begun) = (&self.shared, self.epoch, job.begun);
         let has_picture = job.engine.has_picture();
@@ -274,8 +330,8 @@ impl Worker {
             self.publish();
         }
         match step {
-            Step::Worked | Step::Interrupted => false,
-            Step::Paused | Step::Done => true,
+            Step::Worked | Step::Interrupted => Wait::Nothing,
+            Step::Paused | Step::Done => Wait::Letter,
             Step::Failed(failure) => {
                 if let Some(job) = &mut self.job {
                     job.failed = true;
@@ -283,44 +339,33 @@ impl Worker {
                     self.fail(generation, failure);
                 }
                 // Snapshots that waited for a picture get what there is.
-                self.snapshots.is_empty()
+                if self.snapshots.is_empty() { Wait::Letter } else { Wait::Nothing }
             }
         }
     }
 
     /// Makes a picture of the film and hands it over.
     fn publish(&mut self) {
-        let (mut pixels, mut steps) = self.spare_memory();
+        let mut picture = self.spare_memory();
         let Some(job) = &mut self.job else { return };
-        if !self.shows_steps {
-            steps = StepMap::default();
-        }
-        let wanted = self.shows_steps.then_some(&mut steps);
-        let mut stats = job.engine.picture(&self.pool, &mut pixels, wanted);
-        stats.finished &= job.is_settled();
-        stats.seconds += job.resumed_at.unwrap_or(0.0);
-        let picture = Arc::new(Picture {
-            generation: job.generation,
-            size: job.engine.film().size(),
-            pixels,
-            steps,
-            complete: job.engine.is_complete(),
-            stats,
-        });
+        job.engine.read(&self.pool, self.extras, &mut picture);
+        picture.stats.finished &= job.is_settled();
+        picture.stats.seconds += job.resumed_at.unwrap_or(0.0);
+        picture.generation = job.generation;
+        let picture = Arc::new(picture);
         self.spare.push(Arc::clone(&picture));
         *lock(&self.shared.latest) = Some(picture);
         (self.shared.on_publish)();
     }
 
     /// Memory for a picture: that of an old one if nobody holds it any more.
-    fn spare_memory(&mut self) -> (Vec<[f32; 4]>, StepMap) {
+    fn spare_memory(&mut self) -> Picture {
         let free = self.spare.iter().position(|picture| Arc::strong_count(picture) == 1);
         let free = free.map(|index| self.spare.swap_remove(index));
         // Two are kept: the latest and the one the window may still be reading.
         let excess = self.spare.len().saturating_sub(2);
         self.spare.drain(..excess);
-        free.and_then(|picture| Arc::try_unwrap(picture).ok())
-            .map_or_else(Default::default, |picture| (picture.pixels, picture.steps))
+        free.and_then(|picture| Arc::try_unwrap(picture).ok()).unwrap_or_default()
     }
 }
 

@@ -21,12 +21,10 @@ fn names(strip: &Strip) -> Vec<&str> {
 
 fn picture(pixels: usize) -> Arc<Picture> {
     Arc::new(Picture {
-        generation: 0,
         size: glam::UVec2::ONE,
         pixels: vec![[0.0; 4]; pixels],
-        steps: Default::default(),
         complete: true,
-        stats: Default::default(),
+        ..Picture::default()
     })
 }
 

@@ -1,0 +1,87 @@
+//! What the window shows of a comparison beside the pictures: the bar with its figures, the divider
+//! and the names of the sides.
+
+use egui::{Align2, CursorIcon, FontId, Rect, Sense, Stroke, TextStyle, Ui, pos2, vec2};
+
+use super::App;
+use crate::app::duel::{FLIP, Layout};
+use crate::app::panels::compare;
+use crate::app::state::{Side, strategy_name};
+use crate::app::theme::{self, color, space};
+
+/// Reach of the hand on the divider to either side, in points.
+const GRIP: f32 = 5.0;
+
+impl App {
+    /// Shows how both sides are looked at and what is known of them.
+    pub(super) fn compare_row(&mut self, ui: &mut Ui) {
+        if self.duel.rival().is_none() {
+            return;
+        }
+        egui::Panel::bottom("compare").frame(theme::panel_frame()).show(ui, |ui| {
+            ui.horizontal_wrapped(|ui| {
+                compare::layouts(ui, &mut self.duel.layout);
+                ui.separator();
+                compare::verdict(ui, self.duel.comparison());
+            });
+        });
+    }
+
+    /// Draws the divider and the names of the sides over the pictures in `rect`.
+    pub(super) fn compare_marks(&mut self, ui: &mut Ui, rect: Rect) {
+        let document = &self.editor.document;
+        let Some(compared) = document.compared.filter(|_| self.duel.rival().is_some()) else {
+            return;
+        };
+        let name = |side| compare::side_title(side, strategy_name(&document.strategy_of(side)));
+        let (a, b) = (name(Side::A), name(Side::B));
+        if ui.input(|input| input.key_down(FLIP)) && self.duel.map().is_none() {
+            let other = if compared.active == Side::A { &b } else { &a };
+            chip(ui, rect, rect.center_top(), Align2::CENTER_TOP, other);
+            return;
+        }
+        let middle = match self.duel.layout {
+            Layout::Wipe => self.divider(ui, rect),
+            Layout::Beside => rect.center().x,
+            Layout::Difference(_) | Layout::Noise(_) => return,
+        };
+        let gap = vec2(space::ROW, 0.0);
+        chip(ui, rect, pos2(middle, rect.top()) - gap, Align2::RIGHT_TOP, &a);
+        chip(ui, rect, pos2(middle, rect.top()) + gap, Align2::LEFT_TOP, &b);
+    }
+
+    /// The divider of the wipe, which can be dragged; where it is.
+    fn divider(&mut self, ui: &mut Ui, rect: Rect) -> f32 {
+        let x = rect.left() + self.duel.divider * rect.width();
+        let grip = Rect::from_x_y_ranges(x - GRIP..=x + GRIP, rect.y_range());
+        let response = ui.interact(grip, ui.scope_id().with("divider"), Sense::drag());
+        response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Splitter, true, "Divider"));
+        if response.hovered() || response.dragged() {
+            ui.set_cursor_icon(CursorIcon::ResizeHorizontal);
+        }
+        if let Some(at) = response.interact_pointer_pos().filter(|_| response.dragged()) {
+            self.duel.divider = ((at.x - rect.left()) / rect.width()).clamp(0.0, 1.0);
+        }
+        let x = (rect.left() + self.duel.divider * rect.width()).round();
+        let painter = ui.painter_at(rect);
+        for (width, color) in [(3.0, color::WELL), (1.0, color::TEXT_STRONG)] {
+            painter.vline(x, rect.y_range(), Stroke::new(width, color));
+        }
+        x
+    }
+}
+
+/// A name on a dark ground that moves inwards where `area` ends.
+fn chip(ui: &Ui, area: Rect, at: egui::Pos2, anchor: Align2, text: &str) {
+    let font: FontId = TextStyle::Body.resolve(ui.style());
+    let painter = ui.painter_at(area);
+    let galley = painter.layout_no_wrap(text.to_owned(), font, color::TEXT_STRONG);
+    let size = galley.size() + vec2(12.0, 6.0);
+    let at = at + vec2(0.0, space::ROW);
+    let rect = anchor.anchor_size(at, size);
+    if rect.left() < area.left() || rect.right() > area.right() {
+        return;
+    }
+    painter.rect_filled(rect, space::RADIUS, color::PANEL.gamma_multiply(0.85));
+    painter.galley(rect.min + vec2(6.0, 3.0), galley, color::TEXT_STRONG);
+}

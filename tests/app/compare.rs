@@ -1,0 +1,114 @@
+//! Two strategies side by side: begun, edited, swapped, looked at and ended by keys and names.
+
+use egui::accesskit::Role;
+use egui::{Key, Modifiers};
+use flambeau::app::{Layout, Side};
+use flambeau::render::compare::Verdict;
+use flambeau::transport::strategy::Preset;
+
+use super::{BALL, Window};
+
+impl Window {
+    /// Runs frames until both sides have finished their few samples and are compared.
+    fn until_compared(&mut self) {
+        self.until("both sides are compared", |app| {
+            let finished = |engine: &flambeau::app::Engine| {
+                engine.is_current() && engine.picture().is_some_and(|p| p.stats.finished)
+            };
+            let both = finished(app.engine()) && app.duel().rival().is_some_and(finished);
+            let spp = app.editor().document.settings.film.spp;
+            let all = |comparison: &flambeau::render::compare::Comparison| {
+                comparison.sides.iter().all(|side| side.fewest_samples == spp)
+            };
+            both && app.duel().comparison().is_some_and(all)
+        });
+    }
+}
+
+fn open() -> Option<Window> {
+    let text = BALL.replace("size = [64, 48]", "size = [32, 24]").replace("spp = 4", "spp = 16");
+    let mut window = Window::open(&text)?;
+    window.click(Role::Button, "Fixed");
+    Some(window)
+}
+
+#[test]
+fn a_key_sets_the_strategy_against_the_baseline_and_tells_how_much_it_brings() {
+    let Some(mut window) = open() else { return };
+    window.until_finished();
+    let picture = window.app().engine().picture().unwrap().generation;
+    window.press(Modifiers::NONE, Key::C);
+    assert!(window.has("A  Baseline") && window.has("B  Full"));
+    window.until_compared();
+    assert_eq!(
+        window.app().engine().picture().unwrap().generation,
+        picture,
+        "what was rendered before goes on"
+    );
+    let comparison = window.app().duel().comparison().unwrap().clone();
+    assert_ne!(comparison.agreement.verdict, Verdict::Differ, "{comparison:?}");
+    assert!(window.has(&comparison.sentence()), "{}", comparison.sentence());
+    assert!(window.has("Noise over time: A"));
+    assert!(window.app().duel().histories().iter().all(|history| !history.points().is_empty()));
+
+    window.press(Modifiers::NONE, Key::C);
+    assert!(window.app().duel().rival().is_none() && !window.has("A  Baseline"));
+    assert_eq!(window.document().settings.strategy, Preset::Full.strategy());
+    window.press(Modifiers::COMMAND, Key::Z);
+    assert!(window.document().compared.is_some(), "undo brings the comparison back");
+}
+
+#[test]
+fn toggles_act_on_the_edited_side() {
+    let Some(mut window) = open() else { return };
+    window.press(Modifiers::NONE, Key::C);
+    let strategy = |window: &Window, side| window.document().strategy_of(side);
+    window.press(Modifiers::NONE, Key::Num4);
+    assert!(!strategy(&window, Side::B).nee && window.has("B  Custom"));
+    assert_eq!(strategy(&window, Side::A), Preset::Baseline.strategy());
+    window.press(Modifiers::NONE, Key::B);
+    window.press(Modifiers::NONE, Key::Num4);
+    assert!(strategy(&window, Side::A).nee && !strategy(&window, Side::B).nee);
+    window.click(Role::Button, "Swap");
+    assert!(!strategy(&window, Side::A).nee && strategy(&window, Side::B).nee);
+    window.click(Role::Button, "Copy to other side");
+    assert_eq!(strategy(&window, Side::A), strategy(&window, Side::B));
+    window.until_compared();
+}
+
+#[test]
+fn each_way_to_look_at_both_sides_has_its_picture() {
+    let Some(mut window) = open() else { return };
+    window.press(Modifiers::NONE, Key::C);
+    window.until_compared();
+    assert_eq!(window.app().duel().layout, Layout::Wipe);
+    for (name, kinds) in [
+        ("Side by side", &[][..]),
+        ("Difference", &["Signed", "Absolute", "Relative"]),
+        ("Noise", &["A", "B", "B / A"]),
+    ] {
+        window.click(Role::Button, name);
+        for kind in kinds {
+            window.click(Role::Button, kind);
+            window.until("the map is there", |app| app.duel().map().is_some());
+            assert!(window.has("gray") || window.has("Noise of B over that of A"), "{kind}");
+        }
+    }
+    window.press(Modifiers::NONE, Key::V);
+    assert_eq!(window.app().duel().layout, Layout::Wipe);
+}
+
+/// Camera edits go to both sides, which take turns until both have the samples.
+#[test]
+fn edits_of_the_scene_go_to_both_sides() {
+    let Some(mut window) = open() else { return };
+    window.press(Modifiers::NONE, Key::C);
+    window.until_compared();
+    let before = window.app().duel().pictures(window.app().engine()).unwrap();
+    window.press(Modifiers::NONE, Key::F);
+    window.until_compared();
+    let after = window.app().duel().pictures(window.app().engine()).unwrap();
+    for side in 0..2 {
+        assert_ne!(before[side].pixels, after[side].pixels);
+    }
+}
