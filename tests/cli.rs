@@ -411,6 +411,26 @@ fn compared_pictures_are_those_that_render_makes() {
     assert_eq!(film("more.exr").sample_range(), (7, 7));
 }
 
+/// The better strategy is nearer to a reference, and one of another size is refused before anything
+/// is rendered.
+#[test]
+fn compare_measures_both_sides_against_a_reference() {
+    let place = Place::new();
+    place.succeed(&["render", "scene.toml", "--spp", "256", "--seed", "9", "-o", "reference.exr"]);
+    let compare = ["compare", "scene.toml", "--spp", "8", "--reference", "reference.exr"];
+    let text = place.succeed(&[&compare[..], &["-o", "out"]].concat());
+    assert!(text.contains("relMSE") && text.contains("FLIP"), "{text}");
+    let table = json(&place.path("out").join("table.json"));
+    for measure in ["rel_mse", "flip"] {
+        let [a, b] = ["a", "b"].map(|side| table[side]["errors"][measure].as_f64().unwrap());
+        assert!(0.0 < b && b < a, "{measure}: {a} and {b}");
+    }
+    let (code, _, stderr) = place.run(&[&compare[..], &["--size", "8x8"]].concat());
+    assert!(code == 1 && stderr.contains("8 x 8") && stderr.contains("40 x 30"), "{stderr}");
+    let plain = place.succeed(&["compare", "scene.toml", "--spp", "2"]);
+    assert!(!plain.contains("relMSE"), "{plain}");
+}
+
 #[test]
 fn without_a_folder_compare_prints_and_writes_nothing() {
     let place = Place::new();

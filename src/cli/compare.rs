@@ -1,5 +1,6 @@
 //! `flambeau compare`: two sampling strategies on one scene, at equal cost.
 
+mod errors;
 mod pictures;
 mod sides;
 mod table;
@@ -28,6 +29,7 @@ use crate::render::side_by_side::{PairJob, RenderedPair, render_side_by_side};
 use crate::render::turns::Account;
 use crate::scene::{self, Settings, VolumeCache};
 use crate::transport::{Frame, PixelSampler, Scene};
+use errors::Errors;
 use sides::Choice;
 use table::{SideRow, Table};
 
@@ -55,6 +57,10 @@ pub struct Arguments {
     /// Number of threads; one a core if absent.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
+    /// A picture without noise to measure both sides against: an EXR, or a numpy array, of their
+    /// size.
+    #[arg(long, value_name = "FILE")]
+    reference: Option<PathBuf>,
     /// Folder for the table, both snapshots, the maps and the plot; made if it is not there.
     #[arg(short, long = "output", value_name = "DIR")]
     output: Option<PathBuf>,
@@ -75,6 +81,9 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
     let cache = VolumeCache::default();
     let shared = arguments.scene.settings(&cache, &go_on)?;
     let settings = settings_of_sides(arguments, &shared)?;
+    let size = UVec2::from_array(settings[0].film.size);
+    let reference = arguments.reference.as_deref();
+    let reference = reference.map(|path| errors::load(path, size)).transpose()?;
     if let Some(folder) = &arguments.output {
         make_folder(folder)?;
     }
@@ -94,7 +103,8 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
         cpu_setup: cpu_setup + sides[side].setup,
         cpu_render: pair.sides[side].cpu_seconds,
     });
-    let table = table(arguments, &sides, &pair, &comparison, spent);
+    let errors = reference.map(|reference| errors::of(&reference, &pair)).transpose()?;
+    let table = table(arguments, &sides, &pair, &comparison, (spent, errors));
     print(&table.text())?;
     if let Some(folder) = &arguments.output {
         let headers = [
@@ -201,7 +211,7 @@ fn table(
     sides: &[Prepared; 2],
     pair: &RenderedPair,
     comparison: &Comparison,
-    spent: [Spent; 2],
+    (spent, errors): ([Spent; 2], Option<[Errors; 2]>),
 ) -> Table {
     let choices = [&arguments.a, &arguments.b];
     let row = |side: usize| {
@@ -210,7 +220,7 @@ fn table(
             sides[side].settings.strategy,
             &comparison.sides[side],
             &pair.sides[side],
-            spent[side],
+            (spent[side], errors.map(|errors| errors[side])),
         )
     };
     let film = &sides[0].settings.film;

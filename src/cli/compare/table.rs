@@ -6,6 +6,7 @@ use std::path::Path;
 
 use serde::Serialize;
 
+use super::errors::Errors;
 use crate::cli::stats::Spent;
 use crate::error::{Error, Result};
 use crate::files;
@@ -56,6 +57,8 @@ pub struct SideRow {
     tracking_steps: u64,
     non_finite_samples: u64,
     guard_hits: u64,
+    /// Against the reference, if there is one.
+    errors: Option<Errors>,
     /// Pairs of CPU seconds of rendering and noise.
     noise_over_time: Vec<[f64; 2]>,
 }
@@ -67,7 +70,7 @@ impl SideRow {
         strategy: Strategy,
         side: &Side,
         rendered: &RenderedSide,
-        spent: Spent,
+        (spent, errors): (Spent, Option<Errors>),
     ) -> Self {
         let totals = rendered.film.totals;
         Self {
@@ -87,13 +90,14 @@ impl SideRow {
             tracking_steps: totals.tracking_steps,
             non_finite_samples: totals.non_finite,
             guard_hits: totals.guard_hits,
+            errors,
             noise_over_time: rendered.history.points().to_vec(),
         }
     }
 }
 
 /// The names of the rows.
-const NAMES: [&str; 8] = [
+const NAMES: [&str; 10] = [
     "",
     "strategy",
     "samples per pixel",
@@ -102,6 +106,8 @@ const NAMES: [&str; 8] = [
     "mean (R + G + B) / 3",
     "noise",
     "variance of the mean",
+    "relMSE",
+    "FLIP",
 ];
 
 impl SideRow {
@@ -122,6 +128,8 @@ impl SideRow {
             rounded(gray(self.mean_rgb), 4),
             or_none(self.noise.map(percent)),
             or_none(variance),
+            self.errors.map_or_else(String::new, |errors| format!("{:.3e}", errors.rel_mse)),
+            self.errors.map_or_else(String::new, |errors| rounded(errors.flip, 3)),
         ]
     }
 }
@@ -230,6 +238,10 @@ impl Table {
         let (first, second) = (first.unwrap_or(0), second.unwrap_or(0));
         let mut text = String::new();
         for (name, (a, b)) in std::iter::zip(NAMES, std::iter::zip(&a, &b)) {
+            // Without a reference there are no errors.
+            if a.is_empty() {
+                continue;
+            }
             let line = format!("{name:<first$}   {a:<second$}   {b}");
             // Writing to a String cannot fail.
             let _ = writeln!(text, "{}", line.trim_end());
