@@ -13,7 +13,8 @@ impl Window {
     fn until_compared(&mut self) {
         self.until("both sides are compared", |app| {
             let finished = |engine: &flambeau::app::Engine| {
-                engine.is_current() && engine.picture().is_some_and(|p| p.stats.finished)
+                let latest = engine.is_current() && !engine.is_building();
+                latest && engine.picture().is_some_and(|picture| picture.stats.finished)
             };
             let both = finished(app.engine()) && app.duel().rival().is_some_and(finished);
             let spp = app.editor().document.settings.film.spp;

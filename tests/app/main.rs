@@ -108,7 +108,9 @@ impl Window {
     fn until_finished(&mut self) {
         self.until("the picture is finished", |app| {
             let engine = app.engine();
-            engine.is_current() && engine.picture().is_some_and(|picture| picture.stats.finished)
+            // Until a change is built, the picture of before is the latest.
+            let latest = engine.is_current() && !engine.is_building();
+            latest && engine.picture().is_some_and(|picture| picture.stats.finished)
         });
     }
 
