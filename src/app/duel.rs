@@ -274,8 +274,10 @@ impl Duel {
 /// Adds what a picture says to a history, which begins anew where the render did.
 fn note(history: &mut NoiseHistory, stats: &RenderStats) {
     let seconds = stats.cpu_seconds;
-    if history.points().last().is_some_and(|last| seconds < last[0]) {
-        *history = NoiseHistory::default();
+    match history.points().last() {
+        Some(last) if seconds < last[0] => *history = NoiseHistory::default(),
+        Some(last) if seconds == last[0] => return,
+        _ => {}
     }
     if let Some(noise) = stats.noise {
         history.push(seconds, noise);
