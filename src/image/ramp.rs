@@ -54,9 +54,14 @@ pub fn color(place: f32) -> [u8; 3] {
 /// The sRGB code of a number in -1..=1: blue below zero, orange above, nearly black at zero, and as
 /// bright on either side.
 pub fn signed_color(place: f32) -> [u8; 3] {
+    srgb(signed(place))
+}
+
+/// The same color in linear light.
+pub fn signed(place: f32) -> [f32; 3] {
     let strength = place.abs().min(1.0);
     let hue = if place < 0.0 { 250.0 } else { 60.0 };
-    srgb(linear_from_hue(0.2 + 0.6 * strength, 0.11 * strength.sqrt(), hue))
+    linear_from_hue(0.2 + 0.6 * strength, 0.11 * strength.sqrt(), hue)
 }
 
 fn srgb(linear: [f32; 3]) -> [u8; 3] {
@@ -96,6 +101,11 @@ impl Scale {
             found.unwrap_or(value) as f32
         };
         Self { low: round(low, false), high: round(high, true) }
+    }
+
+    /// A positive number, moved up to 1, 2 or 5 times a power of ten.
+    pub fn rounded_up(value: f32) -> f32 {
+        Self::rounded([value, value]).high
     }
 
     /// Where a number lies between the ends, in 0..=1; 1 where they coincide.

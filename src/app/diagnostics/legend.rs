@@ -6,11 +6,11 @@ use egui::{
 
 use super::cells::Cells;
 use super::{CellValue, Scale, overlay, ramp_color};
-use crate::app::duel::maps::{self, ColorKey, Difference, MapKind, Noise};
+use crate::app::duel::maps::{ColorKey, Difference, MapKind, Noise};
 use crate::app::state::Side;
 use crate::app::theme::{color, space};
 use crate::app::widgets::significant;
-use crate::image::tone::srgb_from_linear;
+use crate::image::ramp;
 
 /// Room that a legend takes.
 const SIZE: egui::Vec2 = vec2(236.0, 82.0);
@@ -121,9 +121,8 @@ fn contents(ui: &mut Ui, legend: &Legend) {
 
 /// A color of a diverging scale at a place in 0..=1.
 fn diverging(place: f32) -> Color32 {
-    let [r, g, b, _] = maps::diverging(2.0 * place - 1.0);
-    let code = |linear: f32| (srgb_from_linear(linear) * 255.0).round() as u8;
-    Color32::from_rgb(code(r), code(g), code(b))
+    let [r, g, b] = ramp::signed_color(2.0 * place - 1.0);
+    Color32::from_rgb(r, g, b)
 }
 
 /// The numbers at the ends of a scale and in its middle.

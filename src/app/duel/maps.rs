@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use crate::app::diagnostics::Scale;
 use crate::app::display::Look;
 use crate::app::state::Side;
+use crate::image::ramp::{self, Scale};
 use crate::image::tone::{Tone, ToneCurve};
 use crate::render::{Picture, StepMap};
 
@@ -57,7 +57,7 @@ pub struct Map {
 pub enum ColorKey {
     /// The ramp of positive numbers.
     Ramp(Scale),
-    /// Blue for less than the middle, black there, orange for more; so far to either side.
+    /// Blue for less than the middle, orange for more; so far to either side.
     Diverging {
         /// The number at the ends.
         reach: f32,
@@ -70,9 +70,6 @@ pub enum ColorKey {
 const BEYOND: f32 = 0.01;
 /// What is added to the denominator of a relative difference, relative to the picture's mean.
 const FLOOR: f32 = 0.01;
-/// Colors of the ends of a diverging scale, linear.
-const LESS: [f32; 3] = [0.08, 0.32, 1.0];
-const MORE: [f32; 3] = [1.0, 0.36, 0.05];
 
 impl Map {
     /// The map of the pictures of A and B; `None` where they have different sizes or nothing to
@@ -122,11 +119,11 @@ impl Map {
     fn diverging(kind: MapKind, like: &Picture, values: &[f32], factors: bool) -> Option<Self> {
         let sizes: Vec<f32> = values.iter().map(|value| value.abs()).collect();
         let reach = quantile(&sizes, 1.0 - BEYOND)?;
-        let reach = if factors { rounded_up(reach.exp()) } else { rounded_up(reach) };
+        let reach = if factors { Scale::rounded_up(reach.exp()) } else { Scale::rounded_up(reach) };
         let span = if factors { reach.ln() } else { reach };
         let picture = Picture {
             size: like.size,
-            pixels: values.iter().map(|value| diverging(value / span)).collect(),
+            pixels: values.iter().map(|value| signed(value / span)).collect(),
             complete: true,
             ..Picture::default()
         };
@@ -136,11 +133,9 @@ impl Map {
     }
 }
 
-/// The color of a number in −1..=1, linear.
-pub fn diverging(value: f32) -> [f32; 4] {
-    let size = if value.is_finite() { value.abs().min(1.0) } else { 0.0 };
-    let end = if value < 0.0 { LESS } else { MORE };
-    let [r, g, b] = end.map(|channel| channel * size);
+/// The color of a number in −1..=1; black where it is not known.
+fn signed(value: f32) -> [f32; 4] {
+    let [r, g, b] = if value.is_finite() { ramp::signed(value) } else { [0.0; 3] };
     [r, g, b, 1.0]
 }
 
@@ -175,11 +170,6 @@ fn quantile(values: &[f32], share: f32) -> Option<f32> {
     Some(*known.select_nth_unstable_by(index, f32::total_cmp).1)
 }
 
-/// The next of 1, 2, 5 times a power of ten.
-fn rounded_up(value: f32) -> f32 {
-    Scale::rounded([value, value]).high
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -205,7 +195,7 @@ mod tests {
         let map = map(MapKind::Difference(Difference::Signed));
         assert_eq!(map.key, ColorKey::Diverging { reach: 5.0, factors: false });
         let pixels = &map.picture.pixels;
-        assert_eq!(pixels[0][..3], [0.0; 3]);
+        assert_eq!(pixels[0][..3], ramp::signed(0.0));
         assert!(pixels[1][2] > pixels[1][0], "less is blue");
         assert!(pixels[3][0] > pixels[3][2] && pixels[3][0] > pixels[2][0], "more is orange");
     }
@@ -222,8 +212,8 @@ mod tests {
         let map = map(MapKind::Noise(Noise::Ratio));
         assert_eq!(map.key, ColorKey::Diverging { reach: 5.0, factors: true });
         let pixels = &map.picture.pixels;
-        assert_eq!(pixels[0][..3], [0.0; 3], "as noisy");
-        assert!(pixels[1][2] > 0.0 && pixels[3][0] > 0.0);
+        assert_eq!(pixels[0][..3], ramp::signed(0.0), "as noisy");
+        assert!(pixels[1][2] > pixels[1][0] && pixels[3][0] > pixels[3][2]);
         assert_eq!(pixels[2][..3], [0.0; 3], "not known");
     }
 

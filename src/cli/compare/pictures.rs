@@ -32,10 +32,11 @@ pub fn write_all(
 
 fn difference(folder: &Path, films: [&Film; 2]) -> Result<()> {
     let values = maps::difference(films);
-    let end = rounded_up(quantile(values.iter().map(|value| value.abs()), 0.99));
+    let most = quantile(values.iter().map(|value| value.abs()), 0.99);
+    let end = if most > 0.0 { Scale::rounded_up(most) } else { 1.0 };
     let map = Map {
-        title: "Difference A − B, relative to the mean of both pictures",
-        note: "Blue: B is brighter. Orange: A is brighter. Noise of both sides shows as well.",
+        title: "Difference B − A, relative to the mean of both pictures",
+        note: "Blue: B is darker. Orange: B is brighter. Noise of both sides shows as well.",
         size: films[0].size(),
         values: &values,
         colors: Colors::Signed(end),
@@ -90,9 +91,4 @@ fn quantile(values: impl Iterator<Item = f32>, part: f64) -> f32 {
     values.sort_by(f32::total_cmp);
     let last = values.len().saturating_sub(1) as f64;
     values.get((part * last).round() as usize).copied().unwrap_or(1.0)
-}
-
-/// The next of 1, 2 and 5 times a power of ten; 1 for no number at all.
-fn rounded_up(value: f32) -> f32 {
-    if value > 0.0 { Scale::rounded([value, value]).high } else { 1.0 }
 }

@@ -16,7 +16,7 @@ pub const ALARM: f64 = 1.0e-3;
 pub const FEWEST_SAMPLES: u32 = ACCUMULATORS as u32;
 
 /// Differences below this share of the brightness may come of rounding to `f32` along the path.
-const ROUNDING: f64 = 1.0e-5;
+pub(super) const ROUNDING: f64 = 1.0e-5;
 
 /// What a check says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,10 +3,11 @@
 use glam::UVec2;
 use rayon::prelude::*;
 
+use super::agreement::ROUNDING;
 use crate::render::estimate::{PixelEstimate, gray};
 use crate::render::film::Film;
 
-/// Gray of A minus gray of B, relative to the mean of both pictures; 0 where a pixel has no sample.
+/// Gray of B minus gray of A, relative to the mean of both pictures; 0 where a pixel has no sample.
 /// Rows from the top. Both films have the same size.
 pub fn difference(films: [&Film; 2]) -> Vec<f32> {
     let size = films[0].size().min(films[1].size());
@@ -14,20 +15,24 @@ pub fn difference(films: [&Film; 2]) -> Vec<f32> {
     let level = 0.5 * (mean(&grays[0]) + mean(&grays[1]));
     let pairs = std::iter::zip(&grays[0], &grays[1]);
     let relative = |(a, b): (&Option<f64>, &Option<f64>)| match (a, b) {
-        (Some(a), Some(b)) if level > 0.0 => ((a - b) / level) as f32,
+        (Some(a), Some(b)) if level > 0.0 => ((b - a) / level) as f32,
         _ => 0.0,
     };
     pairs.map(relative).collect()
 }
 
-/// Standard error of each pixel's gray relative to the mean of the picture; 0 where it is not known.
-/// Rows from the top. The root of the mean of the squares is the noise of the picture.
+/// Standard error of each pixel's gray relative to the mean of the picture; 0 where it is not known
+/// or no more than rounding. Rows from the top. The root of the mean of the squares is the noise of
+/// the picture.
 pub fn noise(film: &Film) -> Vec<f32> {
     let size = film.size();
     let level = mean(&of_pixels(film, size, |pixel| Some(gray(pixel.mean()))));
     let variances = of_pixels(film, size, |pixel| pixel.gray_variance());
     let relative = |variance: &Option<f64>| match *variance {
-        Some(variance) if level > 0.0 => (variance.sqrt() / level) as f32,
+        Some(variance) if level > 0.0 => {
+            let error = variance.sqrt() / level;
+            if error > ROUNDING { error as f32 } else { 0.0 }
+        }
         _ => 0.0,
     };
     variances.iter().map(relative).collect()
@@ -68,13 +73,15 @@ mod tests {
         let square = map.iter().map(|&x| f64::from(x).powi(2)).sum::<f64>() / 600.0;
         let expected = FilmStats::of(&film).noise.unwrap();
         assert!((square.sqrt() / expected - 1.0).abs() < 1e-5);
+        let constant = sampled(&Level { seed: 1, mean: 0.1, spread: 0.0 }, SIZE, 13);
+        assert!(noise(&constant).iter().all(|&x| x == 0.0), "rounding is no noise");
         assert!(noise(&Film::new(SIZE).unwrap()).iter().all(|&x| x == 0.0));
     }
 
     #[test]
     fn differences_are_relative_and_signed() {
         let film = |mean| sampled(&Level { seed: 1, mean, spread: 0.0 }, SIZE, 2);
-        let map = difference([&film(3.0), &film(1.0)]);
+        let map = difference([&film(1.0), &film(3.0)]);
         assert!(map.iter().all(|&x| (x - 1.0).abs() < 1e-6));
         let empty = Film::new(SIZE).unwrap();
         assert!(difference([&film(3.0), &empty]).iter().all(|&x| x == 0.0));

@@ -8,7 +8,7 @@ const CONFIDENCE: f64 = 1.96;
 
 /// What is not known of the ratio of two CPU times, as a share of it: the same work repeats to about
 /// this, also when both sides take turns.
-const TIMING_ERROR: f64 = 0.02;
+const TIMING_ERROR: f64 = 0.03;
 
 /// A ratio known no better than to this factor (95 %) is not said to be a tie: it is not known.
 const TOO_WIDE: f64 = 1.5;
