@@ -1,5 +1,5 @@
 //! Two threads that do what the strip needs of the disk: one writes, in the order it was asked, and
-//! the other reads pictures meanwhile, the one asked for last and no earlier one.
+//! the other reads pictures meanwhile.
 
 use std::path::PathBuf;
 use std::sync::{Arc, mpsc};
@@ -121,7 +121,7 @@ impl Clerk {
         Ok(Self { writer: desk("snapshots")?, reader: desk("snapshot")?, reports })
     }
 
-    /// Asks the disk for something. Of pictures to read only the last is read.
+    /// Asks the disk for something.
     pub fn ask(&self, job: Job) {
         let desk = if matches!(job, Job::Read(_)) { &self.reader } else { &self.writer };
         if let Some(jobs) = &desk.jobs {
@@ -155,7 +155,7 @@ impl Desk {
             .name(name.to_owned())
             .spawn(move || {
                 while let Ok(job) = todo.recv() {
-                    bench.work(newest_read(job, &todo));
+                    bench.work(job);
                     on_report();
                 }
             })
@@ -169,14 +169,6 @@ impl Desk {
             // A panic over there was reported there already.
             let _ = thread.join();
         }
-    }
-}
-
-/// `job`, or the last of those that wait behind it where they only read.
-fn newest_read(job: Job, todo: &mpsc::Receiver<Job>) -> Job {
-    match job {
-        Job::Read(_) => todo.try_iter().last().unwrap_or(job),
-        job => job,
     }
 }
 
