@@ -158,7 +158,7 @@ impl Duel {
     ) -> Result<Vec<News>> {
         let mut news = Vec::new();
         let Some(compared) = document.compared else {
-            self.end(engine);
+            self.end(document, engine);
             return Ok(news);
         };
         self.last = Some(compared);
@@ -189,10 +189,11 @@ impl Duel {
         Ok(news)
     }
 
-    fn end(&mut self, engine: &mut Engine) {
+    /// Ends a comparison. Not where another scene was opened: that goes on where it was.
+    fn end(&mut self, document: &Document, engine: &mut Engine) {
         let Some(mut rival) = self.rival.take() else { return };
-        let edits_rival = self.last.take().is_some_and(|last| last.active != last.main);
-        if edits_rival && rival.rendered().is_some() {
+        let edited = self.last.take().is_some_and(|last| last.active != last.main);
+        if edited && rival.renders(&document.settings) {
             std::mem::swap(engine, &mut rival);
         }
         engine.session().take_seat(None);

@@ -206,6 +206,11 @@ impl Engine {
         self.started.as_ref().map(|started| &started.settings)
     }
 
+    /// Whether that is the scene of these settings, on whatever film.
+    pub fn renders(&self, settings: &Settings) -> bool {
+        self.rendered().is_some_and(|rendered| same_scene(rendered, settings))
+    }
+
     /// Whether sampling is paused.
     pub fn paused(&self) -> bool {
         self.paused

@@ -113,3 +113,21 @@ fn edits_of_the_scene_go_to_both_sides() {
         assert_ne!(before[side].pixels, after[side].pixels);
     }
 }
+
+/// A snapshot that is opened meanwhile goes on from its samples, whichever side is edited.
+#[test]
+fn what_is_opened_ends_the_comparison() {
+    let Some(mut window) = open() else { return };
+    window.until_finished();
+    let path = window.save(Modifiers::COMMAND, "kept.exr");
+    window.press(Modifiers::NONE, Key::C);
+    window.until_compared();
+    window.press(Modifiers::NONE, Key::B);
+    window.press(Modifiers::COMMAND, Key::L);
+    window.type_path(path.to_str().unwrap());
+    window.until("the snapshot is open", |app| app.editor().document.compared.is_none());
+    window.until("it has a picture", |app| app.engine().is_current());
+    let engine = window.app().engine();
+    assert!(window.app().duel().rival().is_none());
+    assert!(engine.picture().unwrap().stats.samples_per_pixel >= 16.0, "all are still there");
+}
