@@ -11,8 +11,8 @@
 //! | `app` | the window (feature `gui`): one file a panel, commands in one enum, one theme |
 //! | [`cli`] | the command line: one file a command |
 //! | [`scene`] | scene files: the one settings struct, its keys, parsing, saving, building |
-//! | [`render`] | film, schedule, the threads that sample, pictures for the window |
-//! | [`image`] | EXR, PNG, NPY, tone mapping, references, error metrics |
+//! | [`render`] | film, schedule, the threads that sample, pictures for the window, two renders compared |
+//! | [`image`] | EXR, PNG, NPY, tone mapping, maps and plots, references, error metrics |
 //! | [`transport`] | how light moves: read [`transport::path`] first, then [`transport::tracking`] |
 //! | [`light`], [`surface`], [`volume`] | what emits, what reflects, what fills space |
 //! | [`sampling`], [`math`] | samplers with their densities, MIS weights; rays, boxes, random numbers |

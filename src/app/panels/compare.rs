@@ -9,7 +9,8 @@ use crate::app::duel::maps::{Difference, Noise};
 use crate::app::duel::{FLIP, Layout};
 use crate::app::state::{Side, strategy_name};
 use crate::app::theme::color;
-use crate::app::widgets::{capitalized, key_of, row, segments, significant};
+use crate::app::widgets::{capitalized, key_of, row, segments};
+use crate::image::figures::rounded;
 use crate::render::compare::{self, Comparison, NoiseHistory, Verdict};
 use crate::render::turns::Share;
 
@@ -169,8 +170,8 @@ pub fn figures(ui: &mut Ui, comparison: &Comparison, histories: &[NoiseHistory; 
         let names = ["A", "B"];
         for ((name, side), color) in names.into_iter().zip(&comparison.sides).zip(COLORS) {
             ui.label(RichText::new(name).color(color));
-            ui.label(significant(three_digits(side.samples_per_pixel)));
-            ui.label(format!("{} s", significant(three_digits(side.cpu_seconds))));
+            ui.label(rounded(side.samples_per_pixel, 3));
+            ui.label(format!("{} s", rounded(side.cpu_seconds, 3)));
             ui.label(noise_with_error(side));
             ui.end_row();
         }
@@ -189,23 +190,5 @@ fn noise_with_error(side: &compare::Side) -> String {
         return "–".to_owned();
     };
     let error = if variance > 0.0 { 0.5 * error / variance } else { 0.0 };
-    let [noise, error] = [100.0 * noise, 100.0 * noise * error];
-    format!("{} ± {} %", significant(three_digits(noise)), significant(one_digit(error)))
-}
-
-fn three_digits(value: f64) -> f64 {
-    digits(value, 2)
-}
-
-fn one_digit(value: f64) -> f64 {
-    digits(value, 0)
-}
-
-/// Rounded to the digits that follow the first.
-fn digits(value: f64, more: i32) -> f64 {
-    if value == 0.0 || !value.is_finite() {
-        return value;
-    }
-    let unit = 10_f64.powi(value.abs().log10().floor() as i32 - more);
-    (value / unit).round() * unit
+    format!("{} ± {} %", rounded(100.0 * noise, 3), rounded(100.0 * noise * error, 1))
 }
