@@ -28,7 +28,9 @@ pub enum Command {
     ZoomToPixels,
     ExposureUp,
     ExposureDown,
+    AutoExposure,
     NextToneCurve,
+    FalseColor,
     FoldPanels,
     Shortcuts,
     Compare,
@@ -50,7 +52,7 @@ use Command as C;
 
 impl Command {
     /// All of them, in the order of the help page.
-    pub const ALL: [Self; 36] = [
+    pub const ALL: [Self; 38] = [
         C::Open,
         C::OpenPath,
         C::SaveExr,
@@ -71,7 +73,9 @@ impl Command {
         C::ZoomToPixels,
         C::ExposureUp,
         C::ExposureDown,
+        C::AutoExposure,
         C::NextToneCurve,
+        C::FalseColor,
         C::FoldPanels,
         C::Shortcuts,
         C::Compare,
@@ -112,7 +116,9 @@ impl Command {
             C::ZoomToPixels => "Zoom to pixels",
             C::ExposureUp => "Exposure up",
             C::ExposureDown => "Exposure down",
+            C::AutoExposure => "Expose for the picture",
             C::NextToneCurve => "Next tone curve",
+            C::FalseColor => "False color",
             C::FoldPanels => "Fold the panels",
             C::Shortcuts => "Keys and mouse",
             C::Compare => "Compare two strategies",
@@ -140,7 +146,9 @@ impl Command {
             }
             C::OpenPath => "Type the path of a scene, a volume or a snapshot, or builtin:NAME.",
             C::SaveExr => "Save the picture as it is, linear and with its layers, as an EXR.",
-            C::SavePng => "Save the picture as you see it, with exposure and tone curve, as a PNG.",
+            C::SavePng => {
+                "Save the picture as you see it, with exposure, white balance and tone curve, as a PNG."
+            }
             C::SaveScene => "Save every setting as a scene file that renders to the same picture.",
             C::Quit => "Close the window.",
             C::Undo => "Take the last edit back.",
@@ -159,7 +167,11 @@ impl Command {
             C::ZoomToPixels => "Zoom in until single pixels show, and back.",
             C::ExposureUp => "Brighten the display by half a stop.",
             C::ExposureDown => "Darken the display by half a stop.",
-            C::NextToneCurve => "Switch between the linear and the filmic tone curve.",
+            C::AutoExposure => {
+                "Set the exposure so that the brightest parts of the picture just keep their color."
+            }
+            C::NextToneCurve => "Go from one tone curve to the next: filmic, AgX, linear.",
+            C::FalseColor => "Show how many stops each pixel is from middle gray, or the picture.",
             C::FoldPanels => "Hide the panels and give the picture the room, or bring them back.",
             C::Shortcuts => "Show every key and every move of the mouse.",
             C::Compare => {
@@ -208,7 +220,9 @@ impl Command {
             C::ZoomToPixels => (Modifiers::NONE, Key::Z),
             C::ExposureUp => (Modifiers::NONE, Key::E),
             C::ExposureDown => (Modifiers::SHIFT, Key::E),
+            C::AutoExposure => (Modifiers::NONE, Key::A),
             C::NextToneCurve => (Modifiers::NONE, Key::T),
+            C::FalseColor => (Modifiers::SHIFT, Key::T),
             C::FoldPanels => (Modifiers::NONE, Key::N),
             C::Shortcuts => (Modifiers::NONE, Key::F1),
             C::Compare => (Modifiers::NONE, Key::C),

@@ -10,7 +10,7 @@ use glam::{UVec2, Vec2};
 use super::diagnostics::{STOPS, Scale, stops};
 use super::theme::color;
 use super::zoom::Placement;
-use crate::image::tone::{Tone, ToneCurve};
+use crate::image::tone::{Channel, Tone, ToneCurve, false_color};
 use crate::render::Picture;
 
 /// `View` of the shader.
@@ -19,12 +19,13 @@ use crate::render::Picture;
 struct View {
     origin: [f32; 2],
     step: f32,
-    exposure: f32,
+    channel: u32,
     size: [u32; 2],
     curve: u32,
     encode: u32,
     surround: [f32; 4],
     scale: [f32; 4],
+    exposed_from_linear: [[f32; 4]; 3],
     ramp: [[f32; 4]; STOPS],
 }
 
@@ -158,31 +159,66 @@ impl CallbackTrait for PaintPicture {
 impl PaintPicture {
     fn view(&self, encode: bool) -> View {
         let surround = egui::Rgba::from(color::SURROUND);
-        let (exposure, curve, scale) = match self.look {
-            Look::Picture(Tone { exposure, curve: ToneCurve::Linear }) => {
-                (exposure.exp2(), 0, None)
-            }
-            Look::Picture(Tone { exposure, curve: ToneCurve::Filmic }) => {
-                (exposure.exp2(), 1, None)
-            }
-            Look::Steps(scale) => (1.0, 2, Some(scale)),
+        let (tone, curve, scale) = match self.look {
+            Look::Picture(tone) => (tone, curve_index(tone.curve), [0.0; 4]),
+            Look::Steps(scale) => (Tone::default(), RAMP, scale_and_span(scale)),
         };
-        let scale = scale.map_or([0.0; 4], |Scale { low, high }| {
-            let span = (high / low).ln();
-            [low.ln(), if span > 0.0 { 1.0 / span } else { 0.0 }, 0.0, 0.0]
-        });
+        let padded_columns =
+            tone.exposed_from_linear().to_cols_array_2d().map(|[x, y, z]| [x, y, z, 0.0]);
+        let ramp = match (self.look, tone.channel) {
+            (Look::Picture(_), Channel::FalseColor) => stop_colors(),
+            _ => *stops(),
+        };
         View {
             origin: (-self.corner / self.placement.scale).into(),
             step: 1.0 / self.placement.scale,
-            exposure,
+            channel: channel_index(tone.channel),
             size: self.picture.size.into(),
             curve,
             encode: u32::from(encode),
             surround: surround.to_array(),
             scale,
-            ramp: stops().map(|[r, g, b]| [r, g, b, 1.0]),
+            exposed_from_linear: padded_columns,
+            ramp: ramp.map(|[r, g, b]| [r, g, b, 1.0]),
         }
     }
+}
+
+/// What the shader calls the ramp.
+const RAMP: u32 = 2;
+
+/// What the shader calls a curve.
+fn curve_index(curve: ToneCurve) -> u32 {
+    match curve {
+        ToneCurve::Linear => 0,
+        ToneCurve::Filmic => 1,
+        ToneCurve::Agx => 3,
+    }
+}
+
+/// What the shader calls a channel.
+fn channel_index(channel: Channel) -> u32 {
+    match channel {
+        Channel::Color => 0,
+        Channel::Red => 1,
+        Channel::Green => 2,
+        Channel::Blue => 3,
+        Channel::Luminance => 4,
+        Channel::FalseColor => 5,
+    }
+}
+
+fn scale_and_span(Scale { low, high }: Scale) -> [f32; 4] {
+    let span = (high / low).ln();
+    [low.ln(), if span > 0.0 { 1.0 / span } else { 0.0 }, 0.0, 0.0]
+}
+
+/// The colors of false color, linear.
+fn stop_colors() -> [[f32; 3]; STOPS] {
+    false_color::COLORS.map(|[r, g, b]| {
+        let [r, g, b, _] = egui::Rgba::from(egui::Color32::from_rgb(r, g, b)).to_array();
+        [r, g, b]
+    })
 }
 
 impl Display {

@@ -1,17 +1,20 @@
 // Shows the picture, one framebuffer pixel at a time: exposure, tone curve and sRGB coding, or one
 // number a pixel as a color of a ramp.
-// The curve mirrors src/image/tone.rs; a test holds the two against each other.
+// Balance, curves and false color mirror src/image/tone; a test holds them against each other.
+
+// Picture pixels per framebuffer pixel from which on a grid is drawn.
+const GRID_FROM: f32 = 0.0626;
 
 struct View {
     // Picture position, in picture pixels, of the framebuffer's upper left corner.
     origin: vec2f,
     // Picture pixels per framebuffer pixel.
     step: f32,
-    // Linear factor.
-    exposure: f32,
+    // 0: color, 1 to 3: red, green, blue, 4: luminance, 5: false color.
+    channel: u32,
     // Size of the picture in pixels; zero where there is none yet.
     size: vec2u,
-    // 0: linear, 1: filmic, 2: the ramp.
+    // 0: linear, 1: filmic, 2: the ramp, 3: AgX.
     curve: u32,
     // 1 where the framebuffer does not code sRGB by itself.
     encode: u32,
@@ -19,7 +22,9 @@ struct View {
     surround: vec4f,
     // Logarithm of the number at the ramp's start, and one over that of the ratio of its ends.
     scale: vec4f,
-    // The ramp, linear.
+    // White balance and exposure, column by column.
+    exposed_from_linear: array<vec4f, 3>,
+    // The ramp or the colors of stops, linear.
     ramp: array<vec4f, 17>,
 };
 
@@ -53,12 +58,70 @@ fn footprint(center: vec2f) -> vec3f {
 }
 
 
+fn agx(color: vec3f) -> vec3f {
+    let inset = mat3x3f(
+        vec3f(0.8424791, 0.04232824, 0.04237566),
+        vec3f(0.0784336, 0.8784686, 0.0784336),
+        vec3f(0.079223745, 0.07916613, 0.87914297),
+    );
+    let outset = mat3x3f(
+        vec3f(1.196879, -0.05289685, -0.052971635),
+        vec3f(-0.09802088, 1.1519031, -0.09804345),
+        vec3f(-0.09902974, -0.09896118, 1.1510737),
+    );
+    let stops = log2(max(inset * color, vec3f(1.0e-10)));
+    let x = (clamp(stops, vec3f(-12.47393), vec3f(4.026069)) + 12.47393) / 16.499999;
+    var curved = vec3f(15.5);
+    curved = curved * x - 40.14;
+    curved = curved * x + 31.96;
+    curved = curved * x - 6.868;
+    curved = curved * x + 0.4298;
+    curved = curved * x + 0.1191;
+    curved = curved * x - 0.00232;
+    return pow(clamp(outset * curved, vec3f(0.0), vec3f(1.0)), vec3f(2.2));
+}
+
+// What of an exposed color is shown: all of it, or one channel of it as gray.
+fn channel_of(color: vec3f) -> vec3f {
+    switch view.channel {
+        case 1u: { return color.rrr; }
+        case 2u: { return color.ggg; }
+        case 3u: { return color.bbb; }
+        case 4u: { return vec3f(luminance(color)); }
+        default: { return color; }
+    }
+}
+
+fn luminance(color: vec3f) -> f32 {
+    return dot(color, vec3f(0.2126, 0.7152, 0.0722));
+}
+
+// The color of the stop that a luminance is from middle gray.
+fn false_color(luminance: f32) -> vec3f {
+    let stop = round(log2(max(luminance, 1.0e-37) / 0.18));
+    return view.ramp[u32(clamp(stop + 8.0, 0.0, 16.0))].rgb;
+}
+
+// White balance, exposure and curve.
+fn shown(color: vec3f) -> vec3f {
+    let columns = view.exposed_from_linear;
+    let balance = mat3x3f(columns[0].rgb, columns[1].rgb, columns[2].rgb);
+    let exposed = balance * clamp(color, vec3f(-1.0e20), vec3f(1.0e20));
+    if view.channel == 5u {
+        return false_color(luminance(exposed));
+    }
+    return tone(channel_of(exposed));
+}
+
 // The tone curve, from exposed linear values to display-linear ones.
 fn tone(color: vec3f) -> vec3f {
     if view.curve == 0u {
         return color;
     }
     let x = clamp(color, vec3f(0.0), vec3f(1.0e4));
+    if view.curve == 3u {
+        return agx(x);
+    }
     return x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14);
 }
 
@@ -90,7 +153,11 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
         if view.curve == 2u {
             color = ramp(footprint(at).r);
         } else {
-            color = tone(footprint(at) * view.exposure);
+            color = shown(footprint(at));
+        }
+        // Lines between pixels that are large enough.
+        if view.step <= GRID_FROM && any(fract(at) < vec2f(view.step)) {
+            color = mix(clamp(color, vec3f(0.0), vec3f(1.0)), vec3f(0.05), 0.5);
         }
     }
     color = clamp(color, vec3f(0.0), vec3f(1.0));

@@ -11,6 +11,7 @@ use super::navigation::Pose;
 use super::state::Editor;
 use super::theme::color;
 use super::zoom::{Placement, Zoom};
+use crate::image::tone::Channel;
 use crate::render::Picture;
 use crate::scene::settings::CameraSettings;
 
@@ -58,6 +59,16 @@ struct Pane<'p> {
 }
 
 impl Shown {
+    /// Whether colors stand for stops.
+    pub fn is_false_color(&self) -> bool {
+        match self {
+            Self::Nothing => false,
+            Self::One(_, look) | Self::Wipe(_, look, _) | Self::Beside(_, look) => {
+                matches!(look, Look::Picture(tone) if tone.channel == Channel::FalseColor)
+            }
+        }
+    }
+
     fn panes(&self, rect: Rect) -> Vec<Pane<'_>> {
         let pane = |picture, look, area, clip| Pane { picture, look, area, clip };
         match self {

@@ -69,7 +69,8 @@ pub fn row<R>(
 pub struct Number<'a> {
     /// What it is called, also for screen readers and undo.
     pub name: &'a str,
-    /// Its key in the scene file, which knows its help and what may be typed.
+    /// Its key in the scene file, which knows its help and what may be typed; empty where it has
+    /// none.
     pub key: &'a str,
     /// What the slider covers.
     pub soft: RangeInclusive<f32>,
@@ -84,12 +85,19 @@ pub struct Number<'a> {
 impl Number<'_> {
     /// Shows the row; whether the value changed.
     pub fn show(self, ui: &mut Ui, value: &mut f32) -> bool {
+        let limits = keys::find(self.key).map_or([f64::MIN, f64::MAX], |key| key.limits);
+        let help = key_help(self.key);
+        self.show_as(ui, value, &help, limits)
+    }
+
+    /// The same for a number that is none of the scene's: its help, and between what it may be typed.
+    pub fn show_as(self, ui: &mut Ui, value: &mut f32, help: &str, limits: [f64; 2]) -> bool {
         let before = *value;
-        let help = format!("{}\n\nDouble-click for {}.", key_help(self.key), self.reset);
+        let help = format!("{help}\n\nDouble-click for {}.", self.reset);
         ui.horizontal(|ui| {
             let label = row_label(ui, self.name, &help);
             let slider = self.slider(ui, value).on_hover_text(&help).labelled_by(label.id);
-            let field = self.field(ui, value).labelled_by(label.id);
+            let field = self.field(ui, value, limits).labelled_by(label.id);
             field.on_hover_text("Click to type, drag to change; with Shift more finely.");
             let double =
                 ui.input(|input| input.pointer.button_double_clicked(egui::PointerButton::Primary));
@@ -114,14 +122,13 @@ impl Number<'_> {
         )
     }
 
-    fn field(&self, ui: &mut Ui, value: &mut f32) -> Response {
+    fn field(&self, ui: &mut Ui, value: &mut f32, [low, high]: [f64; 2]) -> Response {
         let span = f64::from(self.soft.end() - self.soft.start());
         let speed = if self.logarithmic {
             f64::from(value.abs()).max(span * 1e-4) * 0.01
         } else {
             span / 300.0
         };
-        let [low, high] = keys::find(self.key).map_or([f64::MIN, f64::MAX], |key| key.limits);
         let field = DragValue::new(value)
             .speed(speed)
             .range(low..=high)

@@ -17,8 +17,9 @@ use crate::math::Rgb;
 /// # Errors
 /// When the system refuses to write.
 pub fn write(path: &Path, size: UVec2, pixels: &[[f32; 4]], tone: Tone) -> Result<()> {
+    let encoder = tone.encoder();
     let codes: Vec<u8> =
-        pixels.iter().flat_map(|&[r, g, b, _]| tone.encode(Rgb::new(r, g, b))).collect();
+        pixels.iter().flat_map(|&[r, g, b, _]| encoder.encode(Rgb::new(r, g, b))).collect();
     write_codes(path, size, &codes)
 }
 
@@ -49,7 +50,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("out.png");
         let pixels = [[0.0, 0.5, 1.0, 1.0], [2.0, 0.0, 0.002, 0.0]];
-        let tone = Tone { exposure: 0.0, curve: ToneCurve::Linear };
+        let tone = Tone { curve: ToneCurve::Linear, ..Tone::default() };
         write(&path, UVec2::new(2, 1), &pixels, tone).unwrap();
         let read = image::open(&path).unwrap().into_rgb8();
         assert_eq!(read.dimensions(), (2, 1));

@@ -1,55 +1,124 @@
-//! From linear light to the screen: exposure, curve, sRGB. The window's shader does the same.
+//! From linear light to the screen: white balance, exposure, curve, sRGB. The window's shader does
+//! the same.
 
-use crate::math::Rgb;
+mod curve;
+mod exposure;
+pub mod false_color;
+pub mod white;
 
-/// The curve from exposed linear values to display-linear ones.
+use glam::Mat3A;
+
+use crate::math::{Rgb, luminance};
+
+pub use curve::ToneCurve;
+pub use exposure::auto_exposure;
+
+/// What of a color is shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum ToneCurve {
-    /// None: values above 1 clip.
-    Linear,
-    /// A shoulder that lets fire go through yellow to white, and a toe that keeps blacks deep.
+pub enum Channel {
+    /// All of it.
     #[default]
-    Filmic,
+    Color,
+    /// Red, as gray.
+    Red,
+    /// Green, as gray.
+    Green,
+    /// Blue, as gray.
+    Blue,
+    /// Luminance, as gray.
+    Luminance,
+    /// How many stops it is from middle gray, as a color of [`false_color::COLORS`].
+    FalseColor,
 }
 
-/// Beyond this the filmic curve is flat; also keeps its squares finite.
-const BRIGHTEST: f32 = 1.0e4;
+impl Channel {
+    /// All of them, in the order of menus.
+    pub const ALL: [Self; 6] =
+        [Self::Color, Self::Red, Self::Green, Self::Blue, Self::Luminance, Self::FalseColor];
 
-impl ToneCurve {
-    /// The display-linear color, each channel in 0..=1.
-    ///
-    /// Filmic is Narkowicz's fit of the ACES reference curve ("ACES filmic tone mapping curve",
-    /// 2015): x (2.51 x + 0.03) / (x (2.43 x + 0.59) + 0.14) for each channel.
-    #[inline]
-    pub fn apply(self, color: Rgb) -> Rgb {
-        let curved = match self {
-            Self::Linear => color,
-            Self::Filmic => {
-                let x = color.clamp(Rgb::ZERO, Rgb::splat(BRIGHTEST));
-                x * (2.51 * x + Rgb::splat(0.03))
-                    / (x * (2.43 * x + Rgb::splat(0.59)) + Rgb::splat(0.14))
-            }
-        };
-        curved.clamp(Rgb::ZERO, Rgb::ONE)
+    /// What menus call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Color => "Color",
+            Self::Red => "Red",
+            Self::Green => "Green",
+            Self::Blue => "Blue",
+            Self::Luminance => "Luminance",
+            Self::FalseColor => "False color",
+        }
+    }
+
+    /// The exposed linear color that is shown for `color`; of false color it is `color` itself.
+    fn of(self, color: Rgb) -> Rgb {
+        match self {
+            Self::Color | Self::FalseColor => color,
+            Self::Red => Rgb::splat(color.x),
+            Self::Green => Rgb::splat(color.y),
+            Self::Blue => Rgb::splat(color.z),
+            Self::Luminance => Rgb::splat(luminance(color)),
+        }
     }
 }
 
 /// How a picture is brought to the screen.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tone {
     /// Stops of exposure: the picture is multiplied by 2 to this power.
     pub exposure: f32,
+    /// Color temperature of the light that is shown white, in kelvin; [`white::NEUTRAL`] changes
+    /// nothing.
+    pub white: f32,
     /// The curve after exposure.
     pub curve: ToneCurve,
+    /// What of the color is shown.
+    pub channel: Channel,
+}
+
+impl Default for Tone {
+    fn default() -> Self {
+        Self {
+            exposure: 0.0,
+            white: white::NEUTRAL,
+            curve: ToneCurve::default(),
+            channel: Channel::default(),
+        }
+    }
 }
 
 impl Tone {
+    /// From linear colors to white-balanced, exposed ones.
+    pub fn exposed_from_linear(self) -> Mat3A {
+        white::balance(self.white) * self.exposure.exp2()
+    }
+
+    /// What turns linear colors into codes.
+    pub fn encoder(self) -> Encoder {
+        Encoder { tone: self, exposed_from_linear: self.exposed_from_linear() }
+    }
+}
+
+/// Turns linear colors into 8-bit codes.
+#[derive(Clone, Copy, Debug)]
+pub struct Encoder {
+    tone: Tone,
+    exposed_from_linear: Mat3A,
+}
+
+impl Encoder {
     /// The 8-bit sRGB code of a linear color.
-    pub fn encode(self, color: Rgb) -> [u8; 3] {
-        let shown = self.curve.apply(color * self.exposure.exp2());
+    pub fn encode(&self, color: Rgb) -> [u8; 3] {
+        let Tone { curve, channel, .. } = self.tone;
+        let exposed = self.exposed_from_linear * color.clamp(-BRIGHTEST, BRIGHTEST);
+        if channel == Channel::FalseColor {
+            return false_color::code(luminance(exposed));
+        }
+        let shown = curve.apply(channel.of(exposed));
         shown.to_array().map(|value| (srgb_from_linear(value) * 255.0).round() as u8)
     }
 }
+
+/// Keeps infinite light from becoming no number at all.
+const BRIGHTEST: Rgb = Rgb::splat(1.0e20);
 
 /// The sRGB code in 0..=1 of a display-linear value in 0..=1 (IEC 61966-2-1).
 pub fn srgb_from_linear(linear: f32) -> f32 {
@@ -60,28 +129,43 @@ pub fn srgb_from_linear(linear: f32) -> f32 {
 mod tests {
     use super::*;
 
-    #[test]
-    fn curves_rise_from_black_to_white() {
-        for curve in [ToneCurve::Linear, ToneCurve::Filmic] {
-            let at = |value: f32| curve.apply(Rgb::splat(value)).x;
-            assert_eq!(at(0.0), 0.0);
-            assert_eq!(at(-1.0), 0.0);
-            assert_eq!(at(f32::MAX), 1.0);
-            let values: Vec<f32> = (0..2000).map(|i| at(i as f32 * 0.01)).collect();
-            assert!(values.is_sorted(), "{curve:?}");
-        }
-        let gray = ToneCurve::Filmic.apply(Rgb::splat(0.18)).x;
-        assert!((gray - 0.267).abs() < 0.001, "{gray}");
-        assert!(ToneCurve::Filmic.apply(Rgb::splat(1.0)).x < 0.85, "no room left for fire");
-    }
+    const LINEAR: Tone = Tone {
+        exposure: 0.0,
+        white: white::NEUTRAL,
+        curve: ToneCurve::Linear,
+        channel: Channel::Color,
+    };
 
     #[test]
     fn codes_are_srgb() {
-        let linear = Tone { exposure: 0.0, curve: ToneCurve::Linear };
+        let linear = LINEAR.encoder();
         assert_eq!(linear.encode(Rgb::new(0.0, 0.5, 1.0)), [0, 188, 255]);
         assert_eq!(linear.encode(Rgb::splat(0.002)), [7; 3]);
-        let brighter = Tone { exposure: 1.0, ..linear };
-        assert_eq!(brighter.encode(Rgb::splat(0.25)), [188; 3]);
         assert_eq!(linear.encode(Rgb::splat(f32::INFINITY)), [255; 3]);
+        let brighter = Tone { exposure: 1.0, ..LINEAR }.encoder();
+        assert_eq!(brighter.encode(Rgb::splat(0.25)), [188; 3]);
+    }
+
+    #[test]
+    fn channels_show_what_they_say() {
+        let color = Rgb::new(0.0, 0.5, 1.0);
+        let shown = |channel| Tone { channel, ..LINEAR }.encoder().encode(color);
+        assert_eq!(shown(Channel::Red), [0; 3]);
+        assert_eq!(shown(Channel::Green), [188; 3]);
+        assert_eq!(shown(Channel::Blue), [255; 3]);
+        // 0.7152 × 0.5 + 0.0722 = 0.4298 linear.
+        assert_eq!(shown(Channel::Luminance), [175; 3]);
+        let stop = false_color::COLORS[9];
+        let one_up = Tone { channel: Channel::FalseColor, ..LINEAR }.encoder();
+        assert_eq!(one_up.encode(Rgb::splat(0.36)), stop);
+    }
+
+    #[test]
+    fn a_light_of_the_white_is_shown_gray() {
+        let warm = white::of_temperature(2500.0);
+        let [r, g, b] = Tone { white: 2500.0, ..LINEAR }.encoder().encode(0.4 * warm);
+        assert!(r.abs_diff(g) <= 1 && g.abs_diff(b) <= 1, "{r} {g} {b}");
+        let [r, _, b] = LINEAR.encoder().encode(0.4 * warm);
+        assert!(r > b + 50, "{r} {b}");
     }
 }

@@ -11,6 +11,7 @@ use crate::app::state::Side;
 use crate::app::theme::{color, space};
 use crate::app::widgets::significant;
 use crate::image::ramp;
+use crate::image::tone::false_color;
 
 /// Room that a legend takes.
 const SIZE: egui::Vec2 = vec2(236.0, 82.0);
@@ -31,6 +32,12 @@ impl Legend {
     pub fn of_steps(scale: Scale) -> Self {
         let note = "Black: no steps at all".to_owned();
         Self { title: "Tracking steps per sample", colors: Some(ColorKey::Ramp(scale)), note }
+    }
+
+    /// Of false color.
+    pub fn of_stops() -> Self {
+        let note = "Green: middle gray, as exposed".to_owned();
+        Self { title: "Stops from middle gray", colors: Some(ColorKey::Stops), note }
     }
 
     /// Of a map of two pictures.
@@ -103,6 +110,7 @@ fn contents(ui: &mut Ui, legend: &Legend) {
         let (bar, _) =
             ui.allocate_exact_size(vec2(ui.available_width(), BAR), egui::Sense::empty());
         let (color, ends) = match colors {
+            ColorKey::Stops => return stops(ui, bar, &legend.note),
             ColorKey::Ramp(scale) => {
                 (ramp_color as fn(f32) -> Color32, [scale.low, scale.middle(), scale.high])
             }
@@ -116,7 +124,24 @@ fn contents(ui: &mut Ui, legend: &Legend) {
         ui.painter().add(overlay::bar(bar, color));
         numbers(ui, ends);
     }
-    ui.label(RichText::new(&legend.note).small().color(color::TEXT_DIM));
+    note(ui, &legend.note);
+}
+
+fn note(ui: &mut Ui, text: &str) {
+    ui.label(RichText::new(text).small().color(color::TEXT_DIM));
+}
+
+/// A color a stop.
+fn stops(ui: &mut Ui, bar: Rect, text: &str) {
+    let width = bar.width() / false_color::COLORS.len() as f32;
+    for (index, [r, g, b]) in false_color::COLORS.into_iter().enumerate() {
+        let left = bar.left() + index as f32 * width;
+        let rect = Rect::from_min_size(pos2(left, bar.top()), vec2(width, bar.height()));
+        ui.painter().rect_filled(rect, 0.0, Color32::from_rgb(r, g, b));
+    }
+    let reach = false_color::STOPS as f32;
+    numbers(ui, [-reach, 0.0, reach]);
+    note(ui, text);
 }
 
 /// A color of a diverging scale at a place in 0..=1.

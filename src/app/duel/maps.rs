@@ -64,6 +64,8 @@ pub enum ColorKey {
         /// Whether the numbers are factors, 1 in the middle.
         factors: bool,
     },
+    /// One color a stop from middle gray.
+    Stops,
 }
 
 /// The share of pixels that lie beyond the ends of a scale.
@@ -127,7 +129,7 @@ impl Map {
             complete: true,
             ..Picture::default()
         };
-        let look = Look::Picture(Tone { exposure: 0.0, curve: ToneCurve::Linear });
+        let look = Look::Picture(Tone { curve: ToneCurve::Linear, ..Tone::default() });
         let key = ColorKey::Diverging { reach, factors };
         Some(Self { kind, picture: Arc::new(picture), look, key })
     }

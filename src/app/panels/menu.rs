@@ -12,9 +12,10 @@ const FILE: [&[Command]; 3] = [
     &[Command::Quit],
 ];
 const RENDER: [&[Command]; 1] = [&[Command::PauseResume, Command::Restart]];
-const VIEW: [&[Command]; 3] = [
+const VIEW: [&[Command]; 4] = [
     &[Command::FrameVolume, Command::FitPicture, Command::ZoomToPixels],
-    &[Command::ExposureUp, Command::ExposureDown, Command::NextToneCurve],
+    &[Command::AutoExposure, Command::ExposureUp, Command::ExposureDown],
+    &[Command::NextToneCurve, Command::FalseColor],
     &[Command::FoldPanels],
 ];
 const COMPARE: [&[Command]; 2] = [

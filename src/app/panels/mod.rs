@@ -5,6 +5,7 @@ pub mod bars;
 pub mod camera;
 pub mod compare;
 pub mod diagnostics;
+pub mod display;
 pub mod emission;
 pub mod film;
 pub mod help;

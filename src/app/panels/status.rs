@@ -10,7 +10,7 @@ use crate::app::snapshots::{Item, Snapshots};
 use crate::app::theme::{color, space};
 use crate::app::viewport::Viewport;
 use crate::app::widgets::{count, finite};
-use crate::image::tone::ToneCurve;
+use crate::image::tone::{Channel, Tone};
 use crate::render::RenderStats;
 use crate::transport::strategy::Strategy;
 
@@ -196,19 +196,23 @@ fn channel(value: f32) -> String {
     }
 }
 
+/// What the picture is shown by, in a word.
+fn curve_name(tone: Tone) -> &'static str {
+    match tone.channel {
+        Channel::Color => tone.curve.name(),
+        other => other.name(),
+    }
+}
+
 /// Exposure and tone curve, from right to left.
 fn display(ui: &mut Ui, panel: &mut Panel<'_>) {
     let mut edit = None;
     let tone = &mut panel.editor.document.tone;
-    let (name, next) = match tone.curve {
-        ToneCurve::Linear => ("Linear", ToneCurve::Filmic),
-        ToneCurve::Filmic => ("Filmic", ToneCurve::Linear),
-    };
-    let help = "Tone curve: filmic rolls bright fire off softly, linear clips it. For display and \
-                PNG only. Click to switch.  [T]";
-    let button = Button::new(name).min_size(egui::vec2(58.0, 0.0));
+    let button = Button::new(curve_name(*tone)).min_size(egui::vec2(58.0, 0.0));
+    let help = "Tone curve: filmic rolls bright fire off softly, AgX more softly, linear clips it. \
+                For display and PNG only. Click for the next.  [T]";
     if ui.add(button).on_hover_text(help).clicked() {
-        tone.curve = next;
+        tone.curve = tone.curve.next();
         edit = Some("tone curve");
     }
     let field = DragValue::new(&mut tone.exposure)
@@ -218,7 +222,7 @@ fn display(ui: &mut Ui, panel: &mut Panel<'_>) {
         .custom_parser(finite);
     let response = ui.add_sized([44.0, space::ROW_HEIGHT], field).accessible_name("Exposure");
     let help = "Exposure in stops, for display and PNG only. Drag, click to type, E and Shift+E \
-                for half stops, double-click for 0.";
+                for half stops, A for what suits the picture.";
     if response.on_hover_text(help).changed() {
         edit = Some("exposure");
     }

@@ -7,7 +7,7 @@ use super::App;
 use crate::app::commands::Command;
 use crate::app::files::Purpose;
 use crate::app::panels::strategy;
-use crate::image::tone::ToneCurve;
+use crate::image::tone::{Channel, auto_exposure};
 use crate::scene;
 
 impl App {
@@ -34,6 +34,7 @@ impl App {
                 let size = self.shown_picture().map(|picture| picture.size);
                 self.viewport.toggle_pixel_zoom(size);
             }
+            Command::AutoExposure => self.expose(),
             Command::FoldPanels => self.folded = !self.folded,
             Command::Shortcuts => self.help = !self.help,
             _ if self.execute_stored(ctx, command) => {}
@@ -55,11 +56,15 @@ impl App {
                 "exposure"
             }
             Command::NextToneCurve => {
-                document.tone.curve = match document.tone.curve {
-                    ToneCurve::Linear => ToneCurve::Filmic,
-                    ToneCurve::Filmic => ToneCurve::Linear,
-                };
+                document.tone.curve = document.tone.curve.next();
                 "tone curve"
+            }
+            Command::FalseColor => {
+                document.tone.channel = match document.tone.channel {
+                    Channel::FalseColor => Channel::Color,
+                    _ => Channel::FalseColor,
+                };
+                "false color"
             }
             Command::Compare => {
                 match document.compared {
@@ -88,6 +93,15 @@ impl App {
             }
         };
         self.editor.name_edit(name);
+    }
+
+    /// Exposes for the picture that is shown.
+    fn expose(&mut self) {
+        let stops = self.shown_picture().and_then(|picture| auto_exposure(&picture.pixels));
+        if let Some(stops) = stops {
+            self.editor.document.tone.exposure = stops;
+            self.editor.name_edit("exposure");
+        }
     }
 
     /// Moves the camera so that everything finite that fills space is in the picture.

@@ -84,6 +84,7 @@ impl App {
             }
             if let (Some(view), Some(picture)) = (view, &picture) {
                 let map = self.duel.map().map(|map| Legend::of_map(map.kind, map.key));
+                let map = map.or_else(|| shown.is_false_color().then(Legend::of_stops));
                 self.diagnostics.show(ui, view, picture, &self.editor.document.settings, map);
             }
             self.compare_marks(ui, rect);
@@ -157,6 +158,7 @@ fn column(ui: &mut Ui, panel: &mut Panel<'_>, frame: Frame, film: Option<UVec2>,
                 panels::volume::show(ui, panel);
                 panels::camera::show(ui, panel);
                 panels::film::show(ui, panel, film, largest);
+                panels::display::show(ui, panel);
                 panels::diagnostics::show(ui, panel.wanted);
             });
         });

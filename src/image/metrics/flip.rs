@@ -101,7 +101,8 @@ impl<'a> Flip<'a> {
 }
 
 fn codes(pixels: &[[f32; 4]], tone: Tone) -> Vec<[u8; 3]> {
-    pixels.par_iter().map(|&[r, g, b, _]| tone.encode(Rgb::new(r, g, b))).collect()
+    let encoder = tone.encoder();
+    pixels.par_iter().map(|&[r, g, b, _]| encoder.encode(Rgb::new(r, g, b))).collect()
 }
 
 /// What the eye does to any picture at one distance.

@@ -142,7 +142,7 @@ fn pictures_are_compared_as_they_are_shown() {
     };
     let (dark, picture) = (darker(&reference), darker(&picture));
     let dark = Reference::new("dark", size, dark).unwrap();
-    let tone = Tone { exposure: 2.0, curve: ToneCurve::Linear };
+    let tone = Tone { exposure: 2.0, curve: ToneCurve::Linear, ..Tone::default() };
     let shown = Viewing { tone, ..Viewing::default() };
     let shown = Flip::new(&dark, shown).unwrap();
     assert_theirs(&shown.compare(&picture).unwrap(), 0.322_064, &[]);

@@ -1,0 +1,111 @@
+//! How the picture is brought to the screen. Nothing here changes the render.
+
+use egui::{ComboBox, Ui};
+
+use super::{Panel, section};
+use crate::app::commands::Command;
+use crate::app::widgets::{Number, key_of, row, segments};
+use crate::image::tone::{Channel, Tone, ToneCurve, white};
+
+/// Exposures that the slider covers, in stops.
+const STOPS: [f32; 2] = [-8.0, 8.0];
+/// Temperatures that the slider covers, in kelvin.
+const KELVIN: [f32; 2] = [1700.0, 15_000.0];
+/// Width of the list of channels, in points.
+const LIST: f32 = 120.0;
+
+const CURVES: [(ToneCurve, &str); 3] = [
+    (ToneCurve::Filmic, "Rolls bright fire off through yellow to white and keeps blacks deep."),
+    (ToneCurve::Agx, "Softer: bright colors fade to white early, as in Blender."),
+    (ToneCurve::Linear, "No curve: what is brighter than 1 clips."),
+];
+
+/// Shows the section.
+pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
+    section(ui, "Display", |ui| {
+        let reset = Tone::default();
+        let tone = &mut panel.editor.document.tone;
+        let mut edit = None;
+        if exposure(reset).show_as(ui, &mut tone.exposure, EXPOSURE_HELP, [-20.0, 20.0]) {
+            edit = Some("exposure");
+        }
+        let command = Command::AutoExposure;
+        row(ui, "", "", |ui| {
+            let button = egui::Button::new(command.text()).shortcut_text(key_of(ui, command));
+            if ui.add(button).on_hover_text(command.tooltip()).clicked() {
+                panel.commands.push(command);
+            }
+        });
+        let limits = white::RANGE.map(f64::from);
+        if balance(reset).show_as(ui, &mut tone.white, WHITE_HELP, limits) {
+            edit = Some("white balance");
+        }
+        if curve(ui, tone) {
+            edit = Some("tone curve");
+        }
+        if channel(ui, tone) {
+            edit = Some("channel");
+        }
+        if let Some(name) = edit {
+            panel.editor.name_edit(name);
+        }
+    });
+}
+
+const EXPOSURE_HELP: &str = "How bright the picture is shown, in stops: one more is twice as \
+                             bright. For display and PNG only; an EXR keeps the light as it is.";
+
+const WHITE_HELP: &str = "Color temperature of the light that is shown white. 6500 K leaves colors \
+                          as they are; 2500 K makes a torch white and daylight blue. For display and \
+                          PNG only.";
+
+fn exposure(reset: Tone) -> Number<'static> {
+    Number {
+        name: "Exposure",
+        key: "",
+        soft: STOPS[0]..=STOPS[1],
+        logarithmic: false,
+        unit: " stops",
+        reset: reset.exposure,
+    }
+}
+
+fn balance(reset: Tone) -> Number<'static> {
+    Number {
+        name: "White balance",
+        key: "",
+        soft: KELVIN[0]..=KELVIN[1],
+        logarithmic: true,
+        unit: " K",
+        reset: reset.white,
+    }
+}
+
+/// Whether another curve was chosen.
+fn curve(ui: &mut Ui, tone: &mut Tone) -> bool {
+    let choices = CURVES.map(|(curve, help)| (curve.name(), help));
+    let chosen = CURVES.iter().position(|(curve, _)| *curve == tone.curve);
+    let help = "From exposed light to what a screen can show. For display and PNG only.";
+    let clicked = row(ui, "Tone curve", help, |ui| segments(ui, &choices, chosen)).inner;
+    let Some((curve, _)) = clicked.and_then(|index| CURVES.get(index)) else { return false };
+    tone.curve = *curve;
+    true
+}
+
+/// Whether another channel was chosen.
+fn channel(ui: &mut Ui, tone: &mut Tone) -> bool {
+    let help = "All of the color, one channel as gray, or how many stops each pixel is from middle \
+                gray. For display and PNG only.";
+    row(ui, "Show", help, |ui| {
+        let before = tone.channel;
+        let list = ComboBox::from_id_salt("channel").selected_text(before.name()).width(LIST);
+        let list = list.show_ui(ui, |ui| {
+            for channel in Channel::ALL {
+                ui.selectable_value(&mut tone.channel, channel, channel.name());
+            }
+        });
+        list.response.accessible_name("Show").on_hover_text(help);
+        tone.channel != before
+    })
+    .inner
+}
