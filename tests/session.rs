@@ -11,7 +11,7 @@ use flambeau::render::estimate::{PixelEstimate, gray};
 use flambeau::render::publish::Extras;
 use flambeau::render::schedule::Limits;
 use flambeau::render::{
-    Film, FilmStats, Headless, Job, Picture, Request, Resume, Session, render_headless,
+    Film, FilmStats, Headless, Job, Layer, Picture, Request, Resume, Session, render_headless,
 };
 use flambeau::scene;
 use flambeau::transport::{Frame, PathSample, PixelSampler};
@@ -419,21 +419,21 @@ fn steps_come_when_asked_for_even_after_the_end() {
     let (session, published) = session();
     session.start(request(&Shade::new(1.0), 4, 1));
     let picture = wait(&session, &published, |picture| picture.stats.finished);
-    assert!(picture.steps.mean.is_empty());
+    assert!(picture.layer.numbers.is_empty());
 
-    session.set_extras(Extras { steps: true, ..Extras::default() });
-    let picture = wait(&session, &published, |picture| !picture.steps.mean.is_empty());
+    session.set_extras(Extras { layer: Some(Layer::Steps), ..Extras::default() });
+    let picture = wait(&session, &published, |picture| !picture.layer.numbers.is_empty());
     assert_eq!((picture.generation, picture.stats.samples_per_pixel), (1, 4.0));
-    assert_eq!(picture.steps.mean, vec![STEPS as f32; picture.pixels.len()]);
-    assert_eq!(picture.steps.range, Some([STEPS as f32; 2]));
+    assert_eq!(picture.layer.numbers, vec![STEPS as f32; picture.pixels.len()]);
+    assert_eq!(picture.layer.range, Some([STEPS as f32; 2]));
     session.start(request(&Shade::new(1.0), 4, 2));
     let picture = wait(&session, &published, |picture| picture.generation == 2);
-    assert_eq!(picture.steps.mean.len(), picture.pixels.len());
+    assert_eq!(picture.layer.numbers.len(), picture.pixels.len());
 
     session.set_extras(Extras::default());
     session.start(request(&Shade::new(1.0), 4, 3));
     let picture = wait(&session, &published, |picture| picture.generation == 3);
-    assert!(picture.steps.mean.is_empty());
+    assert!(picture.layer.numbers.is_empty());
 }
 
 /// The better sampler is slow: what was shown stays until as much of the new picture is there.

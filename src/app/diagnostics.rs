@@ -13,9 +13,11 @@ use glam::UVec2;
 
 pub use ramp::{STOPS, Scale, color as ramp_color, stops};
 
+use super::display::Look;
 use super::engine::Engine;
 use super::viewport::View;
-use crate::render::Picture;
+use crate::image::tone::Tone;
+use crate::render::{Layer, Picture};
 use crate::scene::{self, Settings};
 use cells::{Gathering, Source};
 pub use legend::Legend;
@@ -37,8 +39,8 @@ pub enum CellValue {
 pub struct Wanted {
     /// The cells over the picture.
     pub cells: Option<CellValue>,
-    /// Whether tracking steps take the place of the picture.
-    pub steps: bool,
+    /// The layer that takes the place of the picture.
+    pub layer: Option<Layer>,
     /// Whether a click on the picture picks a pixel whose ray is looked into.
     pub ray: bool,
 }
@@ -55,7 +57,7 @@ pub struct Diagnostics {
 impl Diagnostics {
     /// Brings session and cells in line with what is wanted. Called once a frame.
     pub fn update(&mut self, ctx: &Context, engine: &mut Engine) {
-        engine.set_shows_steps(self.wanted.steps);
+        engine.set_layer(self.wanted.layer);
         let scene = engine.built().map(|built| built.scene.clone());
         let cells = self.wanted.cells.zip(scene.clone()).map(|(value, scene)| {
             let probes = if value == CellValue::Probes { engine.probes() } else { None };
@@ -66,10 +68,14 @@ impl Diagnostics {
         self.inspector.update(ctx, self.wanted.ray, engine);
     }
 
-    /// The scale of the steps of `picture` where they take its place.
-    pub fn step_scale(&self, picture: &Picture) -> Option<Scale> {
-        let range = picture.steps.range.filter(|_| self.wanted.steps)?;
-        Some(Scale::rounded(range))
+    /// How the layer that is wanted in place of `picture` is looked at, once it is there; light as
+    /// `tone` says.
+    pub fn look(&self, picture: &Picture, tone: Tone) -> Option<Look> {
+        let layer = self.wanted.layer.filter(|_| self.wanted.layer == picture.layer.layer)?;
+        match layer.is_light() {
+            true => Some(Look::Light(tone)),
+            false => picture.layer.range.map(|range| Look::Numbers(Scale::rounded(range))),
+        }
     }
 
     /// Draws over the picture that lies in `view`, the legends in a corner, `map` that of a map in
@@ -83,8 +89,10 @@ impl Diagnostics {
         map: Option<Legend>,
     ) {
         let mut legends: Vec<Legend> = map.into_iter().collect();
-        if let Some(scale) = self.step_scale(picture) {
-            legends.push(Legend::of_steps(scale));
+        if let (Some(Look::Numbers(scale)), Some(layer)) =
+            (self.look(picture, Tone::default()), self.wanted.layer)
+        {
+            legends.push(Legend::of_layer(layer, scale));
         }
         if let Some((value, cells)) = self.gathering.cells(self.wanted.cells) {
             if let (Some(scale), Ok(camera)) = (cells.scale(), scene::camera(settings)) {

@@ -1,5 +1,5 @@
 //! The picture on the graphics card: upload when there is a new one, and the draw call that
-//! exposes, curves and codes it, or colors its steps (`display.wgsl`).
+//! exposes, curves and codes it, or colors its numbers (`display.wgsl`).
 
 use std::num::NonZeroU64;
 use std::sync::Arc;
@@ -37,23 +37,44 @@ pub const PANES: usize = 2;
 pub enum Look {
     /// Its light, exposed and curved.
     Picture(Tone),
-    /// The tracking steps of its pixels, on this scale.
-    Steps(Scale),
+    /// A layer of light in its place.
+    Light(Tone),
+    /// A layer of numbers, on this scale.
+    Numbers(Scale),
+}
+
+/// Which data of a picture is on the graphics card.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Source {
+    Pixels,
+    Light,
+    Numbers,
 }
 
 impl Look {
+    fn source(self) -> Source {
+        match self {
+            Self::Picture(_) => Source::Pixels,
+            Self::Light(_) => Source::Light,
+            Self::Numbers(_) => Source::Numbers,
+        }
+    }
+}
+
+impl Source {
     /// Floats of a pixel on the graphics card.
     fn format(self) -> wgpu::TextureFormat {
         match self {
-            Self::Picture(_) => wgpu::TextureFormat::Rgba32Float,
-            Self::Steps(_) => wgpu::TextureFormat::R32Float,
+            Self::Pixels | Self::Light => wgpu::TextureFormat::Rgba32Float,
+            Self::Numbers => wgpu::TextureFormat::R32Float,
         }
     }
 
     fn data(self, picture: &Picture) -> &[u8] {
         match self {
-            Self::Picture(_) => bytemuck::cast_slice(&picture.pixels),
-            Self::Steps(_) => bytemuck::cast_slice(&picture.steps.mean),
+            Self::Pixels => bytemuck::cast_slice(&picture.pixels),
+            Self::Light => bytemuck::cast_slice(&picture.layer.light),
+            Self::Numbers => bytemuck::cast_slice(&picture.layer.numbers),
         }
     }
 }
@@ -75,7 +96,7 @@ struct Pane {
 /// The uploaded picture.
 struct Shown {
     picture: Arc<Picture>,
-    format: wgpu::TextureFormat,
+    source: Source,
     texture: wgpu::Texture,
     bindings: wgpu::BindGroup,
 }
@@ -135,7 +156,7 @@ impl CallbackTrait for PaintPicture {
             let view = self.view(display.encode);
             let Display { layout, panes, .. } = display;
             if let Some(pane) = panes.get_mut(self.pane) {
-                pane.upload(device, queue, layout, &self.picture, self.look);
+                pane.upload(device, queue, layout, &self.picture, self.look.source());
                 queue.write_buffer(&pane.view, 0, bytemuck::bytes_of(&view));
             }
         }
@@ -160,13 +181,13 @@ impl PaintPicture {
     fn view(&self, encode: bool) -> View {
         let surround = egui::Rgba::from(color::SURROUND);
         let (tone, curve, scale) = match self.look {
-            Look::Picture(tone) => (tone, curve_index(tone.curve), [0.0; 4]),
-            Look::Steps(scale) => (Tone::default(), RAMP, scale_and_span(scale)),
+            Look::Picture(tone) | Look::Light(tone) => (tone, curve_index(tone.curve), [0.0; 4]),
+            Look::Numbers(scale) => (Tone::default(), RAMP, scale_and_span(scale)),
         };
         let padded_columns =
             tone.exposed_from_linear().to_cols_array_2d().map(|[x, y, z]| [x, y, z, 0.0]);
         let ramp = match (self.look, tone.channel) {
-            (Look::Picture(_), Channel::FalseColor) => stop_colors(),
+            (Look::Picture(_) | Look::Light(_), Channel::FalseColor) => stop_colors(),
             _ => *stops(),
         };
         View {
@@ -274,15 +295,16 @@ impl Pane {
         queue: &wgpu::Queue,
         layout: &wgpu::BindGroupLayout,
         picture: &Arc<Picture>,
-        look: Look,
+        source: Source,
     ) {
-        let format = look.format();
+        let format = source.format();
         let is_there =
-            |shown: &Shown| Arc::ptr_eq(&shown.picture, picture) && shown.format == format;
+            |shown: &Shown| Arc::ptr_eq(&shown.picture, picture) && shown.source == source;
         if self.shown.as_ref().is_some_and(is_there) {
             return;
         }
-        let fits = |shown: &Shown| shown.picture.size == picture.size && shown.format == format;
+        let fits =
+            |shown: &Shown| shown.picture.size == picture.size && shown.source.format() == format;
         let (texture, bindings) = match self.shown.take().filter(fits) {
             Some(shown) => (shown.texture, shown.bindings),
             None => self.allocate(device, layout, picture.size, format),
@@ -290,7 +312,7 @@ impl Pane {
         let UVec2 { x: width, y: height } = picture.size;
         queue.write_texture(
             texture.as_image_copy(),
-            look.data(picture),
+            source.data(picture),
             wgpu::TexelCopyBufferLayout {
                 offset: 0,
                 bytes_per_row: format.block_copy_size(None).map(|bytes| bytes * width),
@@ -298,7 +320,7 @@ impl Pane {
             },
             wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
         );
-        self.shown = Some(Shown { picture: picture.clone(), format, texture, bindings });
+        self.shown = Some(Shown { picture: picture.clone(), source, texture, bindings });
     }
 
     fn allocate(

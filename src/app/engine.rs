@@ -11,7 +11,7 @@ use super::notices::Notice;
 use super::prober::Prober;
 use crate::error::{Error, Result};
 use crate::render::publish::Extras;
-use crate::render::{Picture, Resume, Session};
+use crate::render::{Layer, Picture, Resume, Session};
 use crate::scene::settings::FilmSettings;
 use crate::scene::{Settings, VolumeCache};
 use crate::transport::Scene;
@@ -223,8 +223,8 @@ impl Engine {
     }
 
     /// Whether pictures bring the tracking steps of each pixel along.
-    pub fn set_shows_steps(&mut self, shows: bool) {
-        self.set_extras(Extras { steps: shows, ..self.extras });
+    pub fn set_layer(&mut self, layer: Option<Layer>) {
+        self.set_extras(Extras { layer, ..self.extras });
     }
 
     /// Whether pictures bring the variance of each pixel along.

@@ -3,7 +3,7 @@
 //! - [`window`](self): [`App`] owns the state and runs a frame; [`run`] opens a window for it.
 //! - `state`, `history`: what is edited, and undo; `commands`: everything that can be asked for.
 //! - `engine`, `loader`, `prober`: from edits to pictures, without ever blocking the window.
-//! - `viewport`, `navigation`, `zoom`, `display`: the picture and the hand on it.
+//! - `viewport`, `navigation`, `zoom`, `display`, `readout`: the picture and the hand on it.
 //! - `duel`: two strategies on one scene, side by side.
 //! - `diagnostics`: cells over the picture and maps in its place, to understand a render.
 //! - `panels`, `widgets`, `notices`, `theme`: what is around it.
@@ -26,6 +26,7 @@ mod navigation;
 mod notices;
 mod panels;
 mod prober;
+mod readout;
 mod reopen;
 mod saver;
 mod snapshots;

@@ -8,11 +8,12 @@ use glam::{UVec2, Vec2, Vec3};
 
 use super::display::{self, Look};
 use super::navigation::Pose;
+use super::readout;
 use super::state::Editor;
 use super::theme::color;
 use super::zoom::{Placement, Zoom};
 use crate::image::tone::Channel;
-use crate::render::Picture;
+use crate::render::{Layer, Picture};
 use crate::scene::settings::CameraSettings;
 
 /// A new size has to last this long before the film takes it.
@@ -31,8 +32,8 @@ pub struct Probe {
     pub pixel: UVec2,
     /// Linear red, green, blue and alpha, before exposure.
     pub value: [f32; 4],
-    /// Mean tracking steps of a sample, where they are shown.
-    pub steps: Option<f32>,
+    /// The number of the layer, where one is shown.
+    pub number: Option<(f32, Option<Layer>)>,
 }
 
 /// What the viewport shows.
@@ -64,7 +65,7 @@ impl Shown {
         match self {
             Self::Nothing => false,
             Self::One(_, look) | Self::Wipe(_, look, _) | Self::Beside(_, look) => {
-                matches!(look, Look::Picture(tone) if tone.channel == Channel::FalseColor)
+                matches!(look, Look::Picture(tone) | Look::Light(tone) if tone.channel == Channel::FalseColor)
             }
         }
     }
@@ -211,7 +212,11 @@ impl Viewport {
             corner: from_egui(pane.area.min.to_vec2()) * ui.pixels_per_point(),
             pane: index,
         };
+        let placement = shot.placement;
         display::paint(ui.painter(), pane.clip, shot);
+        let rects = [pane.area, pane.clip];
+        let shown = (pane.picture.as_ref(), pane.look);
+        readout::paint(ui.painter(), rects, shown, placement, ui.pixels_per_point());
     }
 
     fn navigate(
@@ -297,8 +302,10 @@ pub fn set_pose(camera: &mut CameraSettings, moved: Pose) {
 fn probe(picture: &Picture, placement: Placement, at: Vec2) -> Option<Probe> {
     let pixel = placement.pixel_at(at, picture.size)?;
     let index = pixel.y as usize * picture.size.x as usize + pixel.x as usize;
-    let steps = picture.steps.mean.get(index).copied();
-    Some(Probe { pixel, value: *picture.pixels.get(index)?, steps })
+    let layer = &picture.layer;
+    let number = layer.numbers.get(index).map(|&number| (number, layer.layer));
+    let value = layer.light.get(index).or_else(|| picture.pixels.get(index));
+    Some(Probe { pixel, value: *value?, number })
 }
 
 /// Draws a frame around a pixel.
@@ -316,7 +323,7 @@ fn outline(ui: &Ui, rect: Rect, placement: Placement, pixel: UVec2, factor: f32)
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::StepMap;
+    use crate::render::LayerMap;
 
     #[test]
     fn the_film_waits_for_a_size_that_lasts() {
@@ -338,15 +345,15 @@ mod tests {
             generation: 1,
             size: UVec2::new(2, 2),
             pixels: vec![[0.0; 4], [1.0; 4], [2.0; 4], [3.0; 4]],
-            steps: StepMap { mean: vec![0.0, 1.0, 4.0, 9.0], range: Some([1.0, 9.0]) },
+            layer: LayerMap { numbers: vec![0.0, 1.0, 4.0, 9.0], ..LayerMap::default() },
             complete: true,
             ..Picture::default()
         };
         let placement = Placement { scale: 4.0, corner: Vec2::new(10.0, 10.0) };
         let read = |x, y| probe(&picture, placement, Vec2::new(x, y)).map(|p| p.value[0]);
         assert_eq!(read(15.0, 11.0), Some(1.0));
-        let steps = probe(&picture, placement, Vec2::new(11.0, 17.9)).and_then(|p| p.steps);
-        assert_eq!(steps, Some(4.0));
+        let number = probe(&picture, placement, Vec2::new(11.0, 17.9)).and_then(|p| p.number);
+        assert_eq!(number, Some((4.0, None)));
         assert_eq!(read(11.0, 17.9), Some(2.0));
         assert_eq!(read(18.1, 11.0), None);
     }

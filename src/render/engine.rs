@@ -6,9 +6,7 @@ use std::time::Instant;
 use super::estimate::samples_per_pixel;
 use super::film::Film;
 use super::pool::{Failure, Pool};
-use super::publish::{
-    Extras, Picture, RenderStats, StepMap, render_stats, resolve, resolve_steps, resolve_variance,
-};
+use super::publish::{Extras, Picture, RenderStats, render_stats, resolve, resolve_variance};
 use super::schedule::{Limits, Next, Schedule};
 use crate::transport::PixelSampler;
 
@@ -96,10 +94,7 @@ impl Engine {
         let start = Instant::now();
         let film = &self.film;
         let noise = pool.install(|| {
-            match extras.steps {
-                true => resolve_steps(film, &mut picture.steps),
-                false => picture.steps = StepMap::default(),
-            }
+            picture.layer.read(film, extras.layer);
             match extras.variance {
                 true => resolve_variance(film, &mut picture.variance),
                 false => picture.variance = Vec::new(),

@@ -13,6 +13,7 @@ pub mod engine;
 pub mod estimate;
 pub mod film;
 pub mod headless;
+pub mod layers;
 pub mod pair;
 pub mod pool;
 pub mod publish;
@@ -25,8 +26,9 @@ pub mod turns;
 pub use estimate::FilmStats;
 pub use film::Film;
 pub use headless::{Headless, Job, render_headless};
+pub use layers::{Layer, LayerMap};
 pub use pool::Failure;
-pub use publish::{Picture, RenderStats, StepMap};
+pub use publish::{Picture, RenderStats};
 pub use session::{Request, Resume, Session};
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use super::estimate::{FilmStats, LineStats, PixelEstimate, samples_per_pixel};
 use super::film::Film;
+use super::layers::{Layer, LayerMap};
 use super::schedule::representative;
 
 /// A finished image of an unfinished render.
@@ -16,8 +17,8 @@ pub struct Picture {
     pub size: UVec2,
     /// Linear RGBA before exposure, row 0 on top. A pixel without samples shows its block.
     pub pixels: Vec<[f32; 4]>,
-    /// What the samples of each pixel cost; empty unless asked for.
-    pub steps: StepMap,
+    /// One of its layers; empty unless asked for.
+    pub layer: LayerMap,
     /// Samples that every pixel has.
     pub fewest_samples: u32,
     /// Variance of the gray mean of each pixel, and the variance of that; row 0 on top, NaN below two
@@ -32,8 +33,8 @@ pub struct Picture {
 /// What a picture brings along beside its light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Extras {
-    /// The tracking steps of its pixels.
-    pub steps: bool,
+    /// One of its layers.
+    pub layer: Option<Layer>,
     /// The variance of its pixels.
     pub variance: bool,
 }
@@ -41,17 +42,8 @@ pub struct Extras {
 impl Extras {
     /// Whether it has anything that `other` has not.
     pub fn adds_to(self, other: Self) -> bool {
-        self.steps && !other.steps || self.variance && !other.variance
+        self.layer.is_some() && self.layer != other.layer || self.variance && !other.variance
     }
-}
-
-/// Mean tentative collisions of a sample of each pixel.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct StepMap {
-    /// The means, row 0 on top; a pixel without samples shows its block.
-    pub mean: Vec<f32>,
-    /// Smallest and largest mean other than zero, if there are any.
-    pub range: Option<[f32; 2]>,
 }
 
 /// How far a render is.
@@ -102,26 +94,6 @@ pub fn resolve(film: &Film, pixels: &mut Vec<[f32; 4]>) -> Option<f64> {
         .map(|(y, line)| resolve_line(film, y as u32, line))
         .collect();
     FilmStats::from_lines(film, &lines).noise
-}
-
-/// Reads the steps of every pixel into `steps`, which gets the size of the film. Runs on the threads
-/// of the calling pool.
-pub fn resolve_steps(film: &Film, steps: &mut StepMap) {
-    let size = film.size();
-    steps.mean.resize(size.x as usize * size.y as usize, 0.0);
-    let lines = steps.mean.par_chunks_mut(size.x as usize).enumerate().map(|(y, line)| {
-        let mut range = [f32::INFINITY, 0.0_f32];
-        for (x, out) in line.iter_mut().enumerate() {
-            let shown = shown_pixel(film, UVec2::new(x as u32, y as u32));
-            *out = PixelEstimate::of(film, shown).map_or(0.0, |pixel| pixel.steps() as f32);
-            if *out > 0.0 {
-                range = [range[0].min(*out), range[1].max(*out)];
-            }
-        }
-        range
-    });
-    let range = lines.reduce(|| [f32::INFINITY, 0.0], |a, b| [a[0].min(b[0]), a[1].max(b[1])]);
-    steps.range = (range[1] > 0.0).then_some(range);
 }
 
 /// Reads the variance of the gray mean of every pixel and the variance of that into `variance`, which gets the size of the
@@ -214,22 +186,6 @@ mod tests {
         assert_eq!(red_at(17, 0), 20.0);
         assert_eq!(pixels[0], [4.0, 0.0, 0.0, 0.25]);
         assert_eq!(pixels[16 * 21], [0.0; 4]);
-    }
-
-    #[test]
-    fn steps_are_means_and_blocks_as_in_the_picture() {
-        let mut film = Film::new(UVec2::new(4, 2)).unwrap();
-        let steps = |steps| PathSample { tracking_steps: steps, ..Default::default() };
-        film.add(UVec2::new(3, 1), &steps(5));
-        film.add(UVec2::new(1, 1), &steps(2));
-        film.add(UVec2::new(1, 1), &steps(1));
-        let mut read = StepMap { mean: vec![9.0; 50], range: None };
-        resolve_steps(&film, &mut read);
-        assert_eq!(read.mean, [1.5, 1.5, 5.0, 5.0, 1.5, 1.5, 5.0, 5.0]);
-        assert_eq!(read.range, Some([1.5, 5.0]));
-        film.clear();
-        resolve_steps(&film, &mut read);
-        assert_eq!(read, StepMap { mean: vec![0.0; 8], range: None });
     }
 
     #[test]

@@ -671,19 +671,19 @@ fn the_map_of_steps_colors_each_pixel_by_what_it_costs() {
     window.click(Role::DisclosureTriangle, "Diagnostics");
     window.click(Role::CheckBox, "Map of tracking steps");
     window.until("the steps are there", |app| {
-        app.engine().picture().is_some_and(|picture| !picture.steps.mean.is_empty())
+        app.engine().picture().is_some_and(|picture| !picture.layer.numbers.is_empty())
     });
     window.harness.remove_cursor();
     window.settle();
     let title = window.harness.get_by_label("Tracking steps per sample").rect();
     let picture = window.app().engine().picture().unwrap().clone();
-    let scale = Scale::rounded(picture.steps.range.unwrap());
+    let scale = Scale::rounded(picture.layer.range.unwrap());
     let area = window.harness.get_by_role_and_label(Role::Image, "Picture").rect();
     let shown = window.harness.render().unwrap();
     let enlarged = (area.width() / 64.0).min(area.height() / 48.0).floor();
     let corner = (area.center() - enlarged * egui::vec2(32.0, 24.0)).round();
     let mut bright = 0;
-    for (index, &steps) in picture.steps.mean.iter().enumerate() {
+    for (index, &steps) in picture.layer.numbers.iter().enumerate() {
         let (x, y) = ((index % 64) as f32, (index / 64) as f32);
         let at = corner + enlarged * egui::vec2(x + 0.5, y + 0.5);
         if at.y > title.top() - 20.0 {

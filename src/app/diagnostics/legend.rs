@@ -12,6 +12,7 @@ use crate::app::theme::{color, space};
 use crate::app::widgets::significant;
 use crate::image::ramp;
 use crate::image::tone::false_color;
+use crate::render::Layer;
 
 /// Room that a legend takes.
 const SIZE: egui::Vec2 = vec2(236.0, 82.0);
@@ -28,10 +29,16 @@ pub struct Legend {
 }
 
 impl Legend {
-    /// Of the map of tracking steps.
-    pub fn of_steps(scale: Scale) -> Self {
-        let note = "Black: no steps at all".to_owned();
-        Self { title: "Tracking steps per sample", colors: Some(ColorKey::Ramp(scale)), note }
+    /// Of a layer of numbers.
+    pub fn of_layer(layer: Layer, scale: Scale) -> Self {
+        let (title, note) = match layer {
+            Layer::Depth => ("Depth, length", "Black: nothing is met"),
+            Layer::Noise => ("Standard error, gray", "Black: none, or not known"),
+            Layer::Steps => ("Tracking steps per sample", "Black: no steps at all"),
+            Layer::Samples => ("Samples", "Of each pixel, so far"),
+            other => (other.name(), ""),
+        };
+        Self { title, colors: Some(ColorKey::Ramp(scale)), note: note.to_owned() }
     }
 
     /// Of false color.

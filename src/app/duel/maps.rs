@@ -8,7 +8,7 @@ use crate::app::display::Look;
 use crate::app::state::Side;
 use crate::image::ramp::{self, Scale};
 use crate::image::tone::{Tone, ToneCurve};
-use crate::render::{Picture, StepMap};
+use crate::render::{LayerMap, Picture};
 
 /// How a difference is measured, of gray values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -109,11 +109,11 @@ impl Map {
         let picture = Picture {
             size: like.size,
             pixels: like.pixels.clone(),
-            steps: StepMap { mean: values, range: Some([low, high]) },
+            layer: LayerMap { numbers: values, range: Some([low, high]), ..LayerMap::default() },
             complete: true,
             ..Picture::default()
         };
-        let (look, key) = (Look::Steps(scale), ColorKey::Ramp(scale));
+        let (look, key) = (Look::Numbers(scale), ColorKey::Ramp(scale));
         Some(Self { kind, picture: Arc::new(picture), look, key })
     }
 
@@ -205,7 +205,7 @@ mod tests {
     #[test]
     fn noise_is_the_root_of_the_variance_and_unknown_is_black() {
         let map = map(MapKind::Noise(Noise::Of(Side::A)));
-        assert_eq!(map.picture.steps.mean, [1.0, 2.0, 0.0, 0.5]);
+        assert_eq!(map.picture.layer.numbers, [1.0, 2.0, 0.0, 0.5]);
         assert_eq!(map.key, ColorKey::Ramp(Scale { low: 0.5, high: 2.0 }));
     }
 

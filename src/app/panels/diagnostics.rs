@@ -6,6 +6,7 @@ use super::{explain, folded_section};
 use crate::app::diagnostics::{CellValue, Wanted};
 use crate::app::theme::space;
 use crate::app::widgets::{row_label, segments};
+use crate::render::Layer;
 
 const CELLS: [(Option<CellValue>, &str, &str); 4] = [
     (None, "Off", "Only the picture."),
@@ -42,7 +43,10 @@ pub fn show(ui: &mut Ui, wanted: &mut Wanted) {
         ui.add_space(space::TIGHT);
         let help = "Steps through the volume, real and null, averaged over the samples of each \
                     pixel. Saved in an EXR as the channel steps.";
-        ui.checkbox(&mut wanted.steps, "Map of tracking steps").on_hover_text(help);
+        let mut steps = wanted.layer == Some(Layer::Steps);
+        if ui.checkbox(&mut steps, "Map of tracking steps").on_hover_text(help).changed() {
+            wanted.layer = steps.then_some(Layer::Steps);
+        }
         explain(ui, "Shows what each pixel costs in place of the picture.");
         ui.add_space(space::TIGHT);
         let help = "What lies along the ray of a pixel, and where on it the strategies scatter, \

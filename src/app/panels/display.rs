@@ -6,6 +6,7 @@ use super::{Panel, section};
 use crate::app::commands::Command;
 use crate::app::widgets::{Number, key_of, row, segments};
 use crate::image::tone::{Channel, Tone, ToneCurve, white};
+use crate::render::Layer;
 
 /// Exposures that the slider covers, in stops.
 const STOPS: [f32; 2] = [-8.0, 8.0];
@@ -46,6 +47,7 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
         if channel(ui, tone) {
             edit = Some("channel");
         }
+        layer(ui, &mut panel.wanted.layer);
         if let Some(name) = edit {
             panel.editor.name_edit(name);
         }
@@ -90,6 +92,22 @@ fn curve(ui: &mut Ui, tone: &mut Tone) -> bool {
     let Some((curve, _)) = clicked.and_then(|index| CURVES.get(index)) else { return false };
     tone.curve = *curve;
     true
+}
+
+/// What takes the place of the picture.
+fn layer(ui: &mut Ui, wanted: &mut Option<Layer>) {
+    let help = "The picture, one part of its light, or what is known of its pixels. An EXR holds \
+                them all.";
+    row(ui, "Layer", help, |ui| {
+        let name = |layer: Option<Layer>| layer.map_or("Picture", Layer::name);
+        let list = ComboBox::from_id_salt("layer").selected_text(name(*wanted)).width(LIST);
+        let list = list.show_ui(ui, |ui| {
+            for layer in std::iter::once(None).chain(Layer::ALL.map(Some)) {
+                ui.selectable_value(wanted, layer, name(layer));
+            }
+        });
+        list.response.accessible_name("Layer").on_hover_text(help);
+    });
 }
 
 /// Whether another channel was chosen.

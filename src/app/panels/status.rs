@@ -2,6 +2,7 @@
 //! pointer.
 
 use egui::{Align, Button, DragValue, Layout, RichText, Ui};
+use glam::UVec2;
 
 use super::Panel;
 use crate::app::commands::Command;
@@ -11,7 +12,7 @@ use crate::app::theme::{color, space};
 use crate::app::viewport::Viewport;
 use crate::app::widgets::{count, finite};
 use crate::image::tone::{Channel, Tone};
-use crate::render::RenderStats;
+use crate::render::{Layer, RenderStats};
 use crate::transport::strategy::Strategy;
 
 /// Room that the zoom takes.
@@ -166,11 +167,12 @@ fn zoom(ui: &mut Ui, scale: f32) {
 fn probe(ui: &mut Ui, viewport: &Viewport) {
     let Some(probe) = viewport.probe else { return };
     ui.separator();
-    if let Some(steps) = probe.steps {
-        let text =
-            format!("{:>4}, {:<4} {:>9} steps", probe.pixel.x, probe.pixel.y, channel(steps));
+    if let Some((number, layer)) = probe.number {
+        let unit = layer.map_or("", unit_of);
+        let UVec2 { x, y } = probe.pixel;
+        let text = format!("{x:>4}, {y:<4} {:>9} {unit}", channel(number));
         ui.label(RichText::new(text).monospace().color(color::TEXT))
-            .on_hover_text("The pixel under the pointer and its mean tracking steps per sample.");
+            .on_hover_text("The pixel under the pointer and its number in the map that is shown.");
         return;
     }
     let [r, g, b, _] = probe.value;
@@ -184,6 +186,17 @@ fn probe(ui: &mut Ui, viewport: &Viewport) {
     );
     ui.label(RichText::new(text).monospace().color(color::TEXT))
         .on_hover_text("The pixel under the pointer and its linear red, green and blue.");
+}
+
+/// What the numbers of a layer count.
+fn unit_of(layer: Layer) -> &'static str {
+    match layer {
+        Layer::Depth => "length",
+        Layer::Samples => "samples",
+        Layer::Noise => "error",
+        Layer::Steps => "steps",
+        Layer::Emission | Layer::Direct | Layer::Indirect | Layer::Background => "",
+    }
 }
 
 /// A channel in about four digits.

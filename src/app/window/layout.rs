@@ -98,8 +98,8 @@ impl App {
             return Shown::One(stored.clone(), Look::Picture(*tone));
         }
         let Some(picture) = self.engine.picture() else { return Shown::Nothing };
-        if let Some(scale) = self.diagnostics.step_scale(picture) {
-            return Shown::One(picture.clone(), Look::Steps(scale));
+        if let Some(look) = self.diagnostics.look(picture, *tone) {
+            return Shown::One(picture.clone(), look);
         }
         compared
             .and_then(|compared| self.duel.shown(ui.ctx(), &self.engine, *tone, compared.active))
