@@ -32,6 +32,7 @@ pub enum Command {
     NextToneCurve,
     FalseColor,
     FoldPanels,
+    Palette,
     Shortcuts,
     Compare,
     SwitchSide,
@@ -52,7 +53,7 @@ use Command as C;
 
 impl Command {
     /// All of them, in the order of the help page.
-    pub const ALL: [Self; 38] = [
+    pub const ALL: [Self; 39] = [
         C::Open,
         C::OpenPath,
         C::SaveExr,
@@ -77,6 +78,7 @@ impl Command {
         C::NextToneCurve,
         C::FalseColor,
         C::FoldPanels,
+        C::Palette,
         C::Shortcuts,
         C::Compare,
         C::SwitchSide,
@@ -120,6 +122,7 @@ impl Command {
             C::NextToneCurve => "Next tone curve",
             C::FalseColor => "False color",
             C::FoldPanels => "Fold the panels",
+            C::Palette => "All commands…",
             C::Shortcuts => "Keys and mouse",
             C::Compare => "Compare two strategies",
             C::SwitchSide => "Edit the other side",
@@ -173,6 +176,7 @@ impl Command {
             C::NextToneCurve => "Go from one tone curve to the next: filmic, AgX, linear.",
             C::FalseColor => "Show how many stops each pixel is from middle gray, or the picture.",
             C::FoldPanels => "Hide the panels and give the picture the room, or bring them back.",
+            C::Palette => "Find a command by a few letters of its name and carry it out.",
             C::Shortcuts => "Show every key and every move of the mouse.",
             C::Compare => {
                 "Render the scene under two strategies, A and B, that share the machine fairly, or go \
@@ -224,6 +228,7 @@ impl Command {
             C::NextToneCurve => (Modifiers::NONE, Key::T),
             C::FalseColor => (Modifiers::SHIFT, Key::T),
             C::FoldPanels => (Modifiers::NONE, Key::N),
+            C::Palette => (Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::P),
             C::Shortcuts => (Modifiers::NONE, Key::F1),
             C::Compare => (Modifiers::NONE, Key::C),
             C::SwitchSide => (Modifiers::NONE, Key::B),

@@ -7,12 +7,14 @@
 //! - `duel`: two strategies on one scene, side by side.
 //! - `diagnostics`: cells over the picture and maps in its place, to understand a render.
 //! - `panels`, `widgets`, `notices`, `theme`: what is around it.
-//! - `files`, `saver`, `reopen`: choosing, writing and going on from files.
+//! - `files`, `saver`, `reopen`: choosing, writing and going on from files; `data`, `remembered`: what
+//!   outlasts a run.
 //! - `snapshots`: pictures kept in a strip, on the disk between runs.
 //! - `frame_stats`: what the window costs (`FLAMBEAU_FRAME_STATS=FILE`).
 
 mod background;
 mod commands;
+mod data;
 mod diagnostics;
 mod display;
 mod duel;
@@ -27,6 +29,7 @@ mod notices;
 mod panels;
 mod prober;
 mod readout;
+mod remembered;
 mod reopen;
 mod saver;
 mod snapshots;

@@ -26,8 +26,6 @@ use crate::render::Picture;
 use clerk::{Clerk, Job, Report};
 use store::Store;
 
-/// The variable of the environment that names the folder of the program's data.
-const DATA: &str = "FLAMBEAU_DATA";
 /// Bytes that snapshots take on the disk at most.
 const LIMIT: u64 = 2 << 30;
 
@@ -46,14 +44,11 @@ pub struct Snapshots {
 }
 
 impl Snapshots {
-    /// Starts to read what is kept in `data`, or where `FLAMBEAU_DATA` says, or among the data of
-    /// the user's programs.
+    /// Starts to read what is kept in the folder `data`, if there is one.
     ///
     /// # Errors
     /// When the system refuses to start threads.
     pub fn new(ctx: &Context, data: Option<PathBuf>) -> Result<Self> {
-        let named = || std::env::var_os(DATA).filter(|name| !name.is_empty()).map(PathBuf::from);
-        let data = data.or_else(named).or_else(|| eframe::storage_dir("flambeau"));
         let store = data.map(|data| Store::new(&data));
         let wake = ctx.clone();
         let clerk = Clerk::new(store.clone(), LIMIT, move || wake.request_repaint())?;

@@ -2,6 +2,7 @@
 
 mod duel;
 mod execute;
+mod keeping;
 mod layout;
 mod paths;
 mod stored;
@@ -13,6 +14,7 @@ use egui::{Context, Ui};
 use glam::UVec2;
 
 use super::commands::Command;
+use super::data;
 use super::diagnostics::Diagnostics;
 use super::display;
 use super::duel::Duel;
@@ -21,6 +23,8 @@ use super::files::{Answer, Dialog, Dialogs, Purpose};
 use super::frame_stats::FrameStats;
 use super::notices::{Level, Notice, Notices};
 use super::panels::bars::PathBar;
+use super::panels::palette::Palette;
+use super::remembered::Remembered;
 use super::saver::Saver;
 use super::snapshots::Snapshots;
 use super::state::{Compared, Editor};
@@ -66,6 +70,12 @@ pub struct App {
     notes: Vec<String>,
     folded: bool,
     help: bool,
+    /// The list of all commands, while it is open.
+    palette: Option<Palette>,
+    /// The folder of what outlasts a run.
+    data: Option<PathBuf>,
+    remembered: Remembered,
+    kept: keeping::Kept,
     largest: u32,
     stats: Option<FrameStats>,
     snapshots: Snapshots,
@@ -86,8 +96,12 @@ impl App {
         let mut engine = Engine::new(options.threads, move || wake.request_repaint())?;
         let source = options.source.unwrap_or_else(|| DEFAULT_SCENE.to_owned());
         engine.open(&source);
+        let data = data::folder(options.data);
+        let remembered = data.as_deref().map(Remembered::read).unwrap_or_default();
+        let mut editor = Editor::default();
+        editor.document.tone = remembered.tone();
         Ok(Self {
-            editor: Editor::default(),
+            editor,
             engine,
             duel: Duel::new(options.threads),
             viewport: Viewport::default(),
@@ -101,11 +115,15 @@ impl App {
             waiting: Vec::new(),
             source,
             notes: Vec::new(),
-            folded: false,
+            folded: remembered.folded,
             help: false,
+            palette: None,
             largest: display::largest_size(state),
             stats,
-            snapshots: Snapshots::new(ctx, options.data)?,
+            snapshots: Snapshots::new(ctx, data.clone())?,
+            data,
+            remembered,
+            kept: keeping::Kept::default(),
             subject: None,
         })
     }
@@ -154,12 +172,15 @@ impl App {
             stats.edited();
         }
         self.bring_up_to_date(&ctx);
+        self.watch_over_changes(&ctx);
     }
 
     /// Finishes what is being saved and writes the diagnostic figures, if they were asked for.
     pub fn close(&mut self) {
         self.saver.finish();
         self.snapshots.close();
+        // Nobody is there any more to be told.
+        let _ = self.write_remembered();
         if let Some(stats) = &self.stats {
             stats.write();
         }
@@ -170,6 +191,7 @@ impl App {
             match item {
                 News::Opened { source, settings, notes, reopened } => {
                     self.notes = notes;
+                    self.kept.opened(&settings);
                     self.editor.open(*settings, reopened.is_some());
                     self.viewport.zoom = Default::default();
                     self.notices = Notices::default();
@@ -178,8 +200,7 @@ impl App {
                         let text = format!("{}: {text}", self.title());
                         self.notices.push(Notice { level, text });
                     }
-                    let title = format!("{} – Flambeau", self.title());
-                    ctx.send_viewport_cmd(egui::ViewportCommand::Title(title));
+                    self.remember_file();
                 }
                 News::Failed(text) => self.notices.failed(text),
                 News::Refused(text) => self.notices.refused(text),
@@ -195,6 +216,7 @@ impl App {
             stats.shown(picture.generation);
         }
         for (path, result) in self.saver.poll() {
+            self.kept.written(&path, result.is_ok());
             match result {
                 Ok(()) => self.notices.done(format!("Saved {}", path.display())),
                 Err(error) => self.notices.failed(error.to_string()),
@@ -210,7 +232,7 @@ impl App {
         }
         let dropped = ctx.input(|input| input.raw.dropped_files.last().cloned());
         if let Some(file) = dropped {
-            self.open(&file.path().to_string_lossy());
+            self.open_unless_lost(&file.path().to_string_lossy());
         }
     }
 

@@ -25,9 +25,10 @@ use crate::{
 /// Probability of null-collision tracking where a flight is either that or guided. It bounds the
 /// weights by its inverse.
 const NULL_SHARE: f32 = 0.6;
-/// Fewest and most guided flights of a ray from the camera, on average.
-const LEAST_FLIGHTS: f32 = 0.1;
+/// Most guided flights of a ray from the camera, on average.
 const MOST_FLIGHTS: f32 = 16.0;
+/// Guided flights that what a ray brings is spread over at least.
+const LEAST_SPREAD: f32 = 0.1;
 /// Relative variance of what an unguided flight finds from which on guided ones pay.
 const MUCH_MISSED: f32 = 1.0;
 
@@ -89,11 +90,12 @@ impl Sharing {
     /// How many guided flights pay, where the guides are those of `line`. The noise of a pixel is
     /// about in proportion to its light, so that the picture's falls fastest for the same effort
     /// where each gets flights in that proportion; fewer where an unguided one finds all the light
-    /// as well, as in a cloud, or where the noise is that of surfaces; and some at least.
+    /// as well, as in a cloud, or where the noise is that of surfaces. But each ray gets one at least,
+    /// or its share of one, as it does from probes alone: what is rarely guided has rare bright paths.
     pub(super) fn new(strategy: &Strategy, line: Option<&Line>, film: &Brightness) -> Self {
         let alone = strategy.advanced.distance == Distance::Probes;
         let Some(line) = line else { return Self { flights: 1.0, alone } };
-        let least = if alone { 1.0 } else { film.share * line.transmittance().max(LEAST_FLIGHTS) };
+        let least = if alone { 1.0 } else { film.share };
         let relative = film.share * (line.light() / film.scattered);
         let wanted = relative * (line.missed() / MUCH_MISSED).min(1.0);
         let flights = match strategy.advanced.scatter_probability {
@@ -200,7 +202,7 @@ impl<'g> Fan<'g> {
     /// What each flight is expected to bring.
     pub(super) fn expected(&self) -> f32 {
         let light = self.guide.line.as_ref().map_or(0.0, |line| line.light());
-        light / self.sharing.flights.max(LEAST_FLIGHTS)
+        light / self.sharing.flights.max(LEAST_SPREAD)
     }
 
     /// Where the guided flights end.

@@ -4,6 +4,8 @@
 //! `FLAMBEAU_REQUIRE_WINDOW_TESTS=1` says that there has to be one.
 
 mod compare;
+mod display;
+mod keeping;
 mod snapshots;
 
 use std::path::{Path, PathBuf};

@@ -6,11 +6,9 @@ use super::Panel;
 use crate::app::commands::Command;
 use crate::app::theme::color;
 
-const FILE: [&[Command]; 3] = [
-    &[Command::Open, Command::OpenPath],
-    &[Command::SaveExr, Command::SavePng, Command::SaveScene],
-    &[Command::Quit],
-];
+const OPEN: [Command; 2] = [Command::Open, Command::OpenPath];
+const FILE: [&[Command]; 2] =
+    [&[Command::SaveExr, Command::SavePng, Command::SaveScene], &[Command::Quit]];
 const RENDER: [&[Command]; 1] = [&[Command::PauseResume, Command::Restart]];
 const VIEW: [&[Command]; 4] = [
     &[Command::FrameVolume, Command::FitPicture, Command::ZoomToPixels],
@@ -27,12 +25,12 @@ const SNAPSHOTS: [&[Command]; 3] = [
     &[Command::PreviousSnapshot, Command::NextSnapshot, Command::LivePicture],
     &[Command::ContinueSnapshot, Command::DeleteSnapshot, Command::UndoDelete],
 ];
-const HELP: [&[Command]; 1] = [&[Command::Shortcuts]];
+const HELP: [&[Command]; 1] = [&[Command::Palette, Command::Shortcuts]];
 
 /// Shows the bar. `title` names what is open.
 pub fn show(ui: &mut Ui, panel: &mut Panel<'_>, title: &str) {
     MenuBar::new().ui(ui, |ui| {
-        menu(ui, panel, "File", &FILE);
+        file_menu(ui, panel);
         edit_menu(ui, panel);
         menu(ui, panel, "Render", &RENDER);
         menu(ui, panel, "View", &VIEW);
@@ -47,17 +45,45 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>, title: &str) {
     });
 }
 
-fn menu(ui: &mut Ui, panel: &mut Panel<'_>, title: &str, groups: &[&[Command]]) {
-    ui.menu_button(title, |ui| {
-        for (index, group) in groups.iter().enumerate() {
-            if index > 0 {
-                ui.separator();
-            }
-            for command in *group {
-                item(ui, panel, *command, command.text(), true);
-            }
-        }
+fn file_menu(ui: &mut Ui, panel: &mut Panel<'_>) {
+    ui.menu_button("File", |ui| {
+        OPEN.into_iter().for_each(|command| item(ui, panel, command, command.text(), true));
+        recent_menu(ui, panel);
+        ui.separator();
+        groups(ui, panel, &FILE);
     });
+}
+
+/// The files that were open before.
+fn recent_menu(ui: &mut Ui, panel: &mut Panel<'_>) {
+    let recent = panel.recent;
+    ui.add_enabled_ui(!recent.is_empty(), |ui| {
+        ui.menu_button("Open recent", |ui| {
+            for path in recent {
+                let name = std::path::Path::new(path).file_name().unwrap_or_default();
+                let button = Button::new(name.to_string_lossy()).min_size(egui::vec2(190.0, 0.0));
+                if ui.add(button).on_hover_text(path).clicked() {
+                    *panel.reopened = Some(path.clone());
+                    ui.close();
+                }
+            }
+        });
+    });
+}
+
+fn menu(ui: &mut Ui, panel: &mut Panel<'_>, title: &str, groups: &[&[Command]]) {
+    ui.menu_button(title, |ui| self::groups(ui, panel, groups));
+}
+
+fn groups(ui: &mut Ui, panel: &mut Panel<'_>, groups: &[&[Command]]) {
+    for (index, group) in groups.iter().enumerate() {
+        if index > 0 {
+            ui.separator();
+        }
+        for command in *group {
+            item(ui, panel, *command, command.text(), true);
+        }
+    }
 }
 
 fn edit_menu(ui: &mut Ui, panel: &mut Panel<'_>) {

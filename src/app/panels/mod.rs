@@ -11,9 +11,11 @@ pub mod film;
 pub mod help;
 pub mod menu;
 pub mod noise_plot;
+pub mod palette;
 pub mod status;
 pub mod strategy;
 pub mod strip;
+pub mod unsaved;
 pub mod volume;
 
 use egui::{CollapsingHeader, RichText, Ui};
@@ -39,6 +41,10 @@ pub struct Panel<'a> {
     pub duel: &'a Duel,
     /// What is shown to understand the render.
     pub wanted: &'a mut Wanted,
+    /// Files that were open before, the last one first.
+    pub recent: &'a [String],
+    /// The one of them that a menu asks for.
+    pub reopened: &'a mut Option<String>,
     /// Commands that buttons ask for.
     pub commands: &'a mut Vec<Command>,
 }

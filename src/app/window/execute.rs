@@ -6,6 +6,7 @@ use glam::UVec2;
 use super::App;
 use crate::app::commands::Command;
 use crate::app::files::Purpose;
+use crate::app::panels::palette::Palette;
 use crate::app::panels::strategy;
 use crate::image::tone::{Channel, auto_exposure};
 use crate::scene;
@@ -36,6 +37,12 @@ impl App {
             }
             Command::AutoExposure => self.expose(),
             Command::FoldPanels => self.folded = !self.folded,
+            Command::Palette => {
+                self.palette = match self.palette.take() {
+                    Some(_) => None,
+                    None => Some(Palette::default()),
+                };
+            }
             Command::Shortcuts => self.help = !self.help,
             _ if self.execute_stored(ctx, command) => {}
             _ => self.edit(command),

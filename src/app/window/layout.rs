@@ -11,6 +11,7 @@ use crate::app::diagnostics::Legend;
 use crate::app::display::Look;
 use crate::app::files::typed;
 use crate::app::panels::bars::{self, Typed};
+use crate::app::panels::palette::Choice;
 use crate::app::panels::{self, Panel};
 use crate::app::state::Document;
 use crate::app::theme::{self, color, space};
@@ -23,6 +24,7 @@ impl App {
         let plain = self.panel_frame();
         let grids = self.engine.grids().clone();
         let edited = self.duel.edited(&self.engine);
+        let mut reopened = None;
         let mut panel = Panel {
             editor: &mut self.editor,
             grids: &grids,
@@ -30,6 +32,8 @@ impl App {
             guided_flights: edited.picture().and_then(|picture| picture.stats.guided_flights),
             duel: &self.duel,
             wanted: &mut self.diagnostics.wanted,
+            recent: &self.remembered.recent,
+            reopened: &mut reopened,
             commands,
         };
         let bar = plain.inner_margin(Margin::symmetric(8, 3));
@@ -46,6 +50,10 @@ impl App {
         }
         egui::CentralPanel::no_frame().show(ui, |ui| self.picture_area(ui));
         panels::help::show(ui.ctx(), &mut self.help);
+        self.palette_window(ui, commands);
+        if let Some(path) = reopened {
+            self.open_unless_lost(&path);
+        }
     }
 
     /// What fixed panels lie on. A window that is cleared to their color spares the painting,
@@ -66,6 +74,7 @@ impl App {
         self.path_bar_row(ui);
         drop_row(ui);
         self.progress_row(ui);
+        self.unsaved_row(ui);
         self.compare_row(ui);
         if !self.notices.list().is_empty() {
             egui::Panel::bottom("notices")
@@ -104,6 +113,16 @@ impl App {
         compared
             .and_then(|compared| self.duel.shown(ui.ctx(), &self.engine, *tone, compared.active))
             .unwrap_or_else(|| Shown::One(picture.clone(), Look::Picture(*tone)))
+    }
+
+    fn palette_window(&mut self, ui: &Ui, commands: &mut Vec<Command>) {
+        let Some(palette) = &mut self.palette else { return };
+        match palette.show(ui.ctx()) {
+            Choice::Pending => return,
+            Choice::Done(command) => commands.push(command),
+            Choice::Left => {}
+        }
+        self.palette = None;
     }
 
     fn path_bar_row(&mut self, ui: &mut Ui) {

@@ -19,7 +19,7 @@ impl App {
     /// Does with a chosen path what it was asked for.
     pub(super) fn take_path(&mut self, ctx: &Context, purpose: Purpose, path: PathBuf) {
         if purpose == Purpose::Open {
-            self.open(&path.to_string_lossy());
+            self.open_unless_lost(&path.to_string_lossy());
         } else if self.engine.is_building() {
             // The film is about to become that of another scene.
             self.waiting.push((purpose, path));
@@ -44,6 +44,9 @@ impl App {
         };
         let wake = ctx.clone();
         let path = purpose.complete(path);
+        if let Content::Scene(settings) = &content {
+            self.kept.writes(&path, settings.clone());
+        }
         if let Err(error) = self.saver.start(path, content, move || wake.request_repaint()) {
             self.notices.failed(error.to_string());
         }

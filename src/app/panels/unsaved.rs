@@ -1,0 +1,50 @@
+//! The bar that asks before changes of the scene are lost.
+
+use egui::{Button, RichText, Ui};
+
+use crate::app::theme::color;
+
+/// What would lose them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Losing {
+    /// The window would close.
+    Close,
+    /// A scene, a volume or a snapshot would take their place.
+    Open(String),
+}
+
+/// What the user says to it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Answer {
+    /// Save the scene first.
+    Save,
+    /// Go on without.
+    Discard,
+    /// Don't go on.
+    Stay,
+}
+
+/// Asks about the changes of the scene called `title`.
+pub fn ask(ui: &mut Ui, title: &str, losing: &Losing) -> Option<Answer> {
+    let discard = match losing {
+        Losing::Close => "Close without saving",
+        Losing::Open(_) => "Open without saving",
+    };
+    let buttons = [
+        ("Save scene…", Answer::Save, "Save every setting as a scene file first."),
+        (discard, Answer::Discard, "The changes are lost."),
+        ("Cancel", Answer::Stay, "Go on working on it."),
+    ];
+    ui.horizontal_wrapped(|ui| {
+        let text = format!("{title} has changes that are not saved.");
+        ui.label(RichText::new(text).color(color::WARNING));
+        let mut answer = None;
+        for (text, says, help) in buttons {
+            if ui.add(Button::new(text)).on_hover_text(help).clicked() {
+                answer = Some(says);
+            }
+        }
+        answer
+    })
+    .inner
+}

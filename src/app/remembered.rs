@@ -1,0 +1,121 @@
+//! What the window remembers between runs: how it is laid out, how pictures are shown, which files
+//! were open. Never the scene or the strategy.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::{Error, Result};
+use crate::files;
+use crate::image::tone::{Tone, ToneCurve};
+
+/// The file, in the folder of the program's data.
+const FILE: &str = "window.json";
+/// Files that are remembered at most.
+const RECENT: usize = 10;
+
+/// What is remembered.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Remembered {
+    /// Files that were open, the last one first.
+    pub recent: Vec<String>,
+    /// Whether the panels are folded.
+    pub folded: bool,
+    /// The tone curve, by its name.
+    curve: String,
+    /// Exposure in stops.
+    exposure: f32,
+    /// White balance in kelvin; 0 where none was chosen.
+    white: f32,
+}
+
+impl Remembered {
+    /// What was remembered in `data`. What cannot be read is as good as nothing: no setting of the
+    /// window is worth a complaint at its start.
+    pub fn read(data: &Path) -> Self {
+        let text = std::fs::read_to_string(data.join(FILE)).unwrap_or_default();
+        serde_json::from_str(&text).unwrap_or_default()
+    }
+
+    /// Writes it to `data`.
+    ///
+    /// # Errors
+    /// When the system refuses; names the file.
+    pub fn write(&self, data: &Path) -> Result<()> {
+        let path = data.join(FILE);
+        let text = serde_json::to_vec_pretty(self)
+            .map_err(|error| Error::invalid(path.display().to_string(), "", error.to_string()))?;
+        std::fs::create_dir_all(data).map_err(|error| Error::io(data, error))?;
+        files::replace(&path, |file| file.write_all(&text).map_err(|error| Error::io(&path, error)))
+    }
+
+    /// Notes that `source` was opened. What is built in is always at hand.
+    pub fn note(&mut self, source: &str) {
+        if source.starts_with("builtin:") {
+            return;
+        }
+        let path = std::path::absolute(source).unwrap_or_else(|_| PathBuf::from(source));
+        let path = path.to_string_lossy().into_owned();
+        self.recent.retain(|other| *other != path);
+        self.recent.insert(0, path);
+        self.recent.truncate(RECENT);
+    }
+
+    /// How pictures are shown at first.
+    pub fn tone(&self) -> Tone {
+        let plain = Tone::default();
+        let curve = ToneCurve::ALL.into_iter().find(|curve| curve.name() == self.curve);
+        let sane = |value: f32, or: f32| if value.is_finite() && value != 0.0 { value } else { or };
+        Tone {
+            curve: curve.unwrap_or_default(),
+            exposure: sane(self.exposure, 0.0).clamp(-20.0, 20.0),
+            white: sane(self.white, plain.white),
+            ..plain
+        }
+    }
+
+    /// Notes how pictures are shown. Which channel is looked at passes.
+    pub fn note_tone(&mut self, tone: Tone) {
+        self.curve = tone.curve.name().to_owned();
+        self.exposure = tone.exposure;
+        self.white = tone.white;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::image::tone::Channel;
+
+    #[test]
+    fn what_is_written_is_remembered_and_nonsense_is_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let data = folder.path().join("data");
+        assert_eq!(Remembered::read(&data), Remembered::default());
+        assert_eq!(Remembered::default().tone(), Tone::default());
+        let tone = Tone { exposure: -1.5, white: 3200.0, curve: ToneCurve::Agx, ..Tone::default() };
+        let mut remembered = Remembered { folded: true, ..Remembered::default() };
+        remembered.note_tone(Tone { channel: Channel::FalseColor, ..tone });
+        remembered.note("/shots/torch.toml");
+        remembered.write(&data).unwrap();
+        let again = Remembered::read(&data);
+        assert_eq!((again.tone(), &again), (tone, &remembered));
+        std::fs::write(data.join(FILE), "{ \"folded\": 7 }").unwrap();
+        assert_eq!(Remembered::read(&data), Remembered::default());
+    }
+
+    #[test]
+    fn the_last_file_comes_first_and_each_once() {
+        let mut remembered = Remembered::default();
+        for index in 0..12 {
+            remembered.note(&format!("/shots/{index}.toml"));
+        }
+        remembered.note("/shots/5.toml");
+        remembered.note("builtin:torch");
+        assert_eq!(remembered.recent.len(), RECENT);
+        assert_eq!(remembered.recent[..2], ["/shots/5.toml", "/shots/11.toml"]);
+        assert_eq!(remembered.recent.iter().filter(|path| path.contains("/5.")).count(), 1);
+    }
+}

@@ -1,0 +1,168 @@
+//! What must not get lost: changes of the scene, and what the window remembers between runs.
+
+use std::path::{Path, PathBuf};
+
+use egui::{Context, Ui, ViewportCommand};
+
+use super::App;
+use crate::app::files::Purpose;
+use crate::app::panels::unsaved::{self, Answer, Losing};
+use crate::app::theme;
+use crate::scene::Settings;
+
+/// The scene as it is on the disk, or on its way there.
+#[derive(Debug, Default)]
+pub(super) struct Kept {
+    /// As it was opened or saved last.
+    saved: Settings,
+    /// Scenes that are being written.
+    writing: Vec<(PathBuf, Settings)>,
+    /// What would lose changes, while it is asked about.
+    pub(super) losing: Option<Losing>,
+    /// Whether the changes may be lost, or the window close.
+    allowed: bool,
+    /// The title of the window.
+    title: String,
+}
+
+impl Kept {
+    /// A scene was opened.
+    pub(super) fn opened(&mut self, settings: &Settings) {
+        self.saved = settings.clone();
+        self.losing = None;
+        self.allowed = false;
+    }
+
+    /// A scene is being written to `path`.
+    pub(super) fn writes(&mut self, path: &Path, settings: Settings) {
+        self.writing.push((path.to_owned(), settings));
+    }
+
+    /// `path` was written, or could not be.
+    pub(super) fn written(&mut self, path: &Path, is_there: bool) {
+        if let Some(index) = self.writing.iter().position(|(writing, _)| writing == path) {
+            let (_, settings) = self.writing.remove(index);
+            if is_there {
+                self.saved = settings;
+            }
+        }
+    }
+
+    /// Whether `settings` have changes that a file has not. Strategies are tried on and off all the
+    /// time and change no picture, and a film that follows the window has no size of its own.
+    fn misses(&self, settings: &Settings, keep_size: bool) -> bool {
+        let mut saved = self.saved.clone();
+        saved.strategy = settings.strategy;
+        if !keep_size {
+            saved.film.size = settings.film.size;
+        }
+        saved != *settings
+    }
+}
+
+impl App {
+    /// Whether the scene has changes that no file has.
+    pub fn has_unsaved_changes(&self) -> bool {
+        let document = &self.editor.document;
+        self.kept.misses(&document.settings, document.keep_size)
+    }
+
+    /// Says in the title of the window what is open and whether it was changed, and asks before a
+    /// window with changes closes.
+    pub(super) fn watch_over_changes(&mut self, ctx: &Context) {
+        let mark = if self.has_unsaved_changes() { "* " } else { "" };
+        let title = format!("{mark}{} – Flambeau", self.title());
+        if title != self.kept.title {
+            ctx.send_viewport_cmd(ViewportCommand::Title(title.clone()));
+            self.kept.title = title;
+        }
+        let closes = ctx.input(|input| input.viewport().close_requested());
+        if closes && !self.kept.allowed && self.has_unsaved_changes() {
+            ctx.send_viewport_cmd(ViewportCommand::CancelClose);
+            self.kept.losing = Some(Losing::Close);
+        }
+    }
+
+    /// Opens `source`, or asks first where that would lose changes.
+    pub(super) fn open_unless_lost(&mut self, source: &str) {
+        if self.has_unsaved_changes() {
+            self.path_bar = None;
+            self.kept.losing = Some(Losing::Open(source.to_owned()));
+        } else {
+            self.open(source);
+        }
+    }
+
+    /// The bar that asks.
+    pub(super) fn unsaved_row(&mut self, ui: &mut Ui) {
+        let Some(losing) = self.kept.losing.clone() else { return };
+        if !self.has_unsaved_changes() {
+            self.go_on(ui.ctx(), losing);
+            return;
+        }
+        let title = self.title();
+        let row = egui::Panel::bottom("unsaved").frame(theme::panel_frame());
+        match row.show(ui, |ui| unsaved::ask(ui, &title, &losing)).inner {
+            Some(Answer::Save) => self.ask(&ui.ctx().clone(), Purpose::SaveScene),
+            Some(Answer::Discard) => self.go_on(ui.ctx(), losing),
+            Some(Answer::Stay) => self.kept.losing = None,
+            None => {}
+        }
+    }
+
+    fn go_on(&mut self, ctx: &Context, losing: Losing) {
+        self.kept.losing = None;
+        match losing {
+            Losing::Open(source) => self.open(&source),
+            Losing::Close => {
+                self.kept.allowed = true;
+                ctx.send_viewport_cmd(ViewportCommand::Close);
+            }
+        }
+    }
+
+    /// Notes the file that was opened, for the next run too.
+    pub(super) fn remember_file(&mut self) {
+        self.remembered.note(&self.source);
+        if let Err(error) = self.write_remembered() {
+            self.notices.failed(error.to_string());
+        }
+    }
+
+    /// Writes what the window remembers.
+    pub(super) fn write_remembered(&mut self) -> crate::error::Result<()> {
+        self.remembered.folded = self.folded;
+        self.remembered.note_tone(self.editor.document.tone);
+        match &self.data {
+            Some(data) => self.remembered.write(data),
+            None => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::transport::strategy::Preset;
+
+    #[test]
+    fn changes_are_what_no_file_has() {
+        let mut settings = Settings::default();
+        let mut kept = Kept::default();
+        kept.opened(&settings);
+        settings.strategy = Preset::Baseline.strategy();
+        settings.film.size = [7, 7];
+        assert!(!kept.misses(&settings, false), "strategies and the window's size are none");
+        assert!(kept.misses(&settings, true));
+        settings.camera.fov_x += 1.0;
+        assert!(kept.misses(&settings, false));
+        let path = Path::new("torch.toml");
+        kept.writes(path, settings.clone());
+        assert!(kept.misses(&settings, false), "not there yet");
+        kept.written(path, false);
+        assert!(kept.misses(&settings, false), "it failed");
+        kept.writes(path, settings.clone());
+        kept.written(path, true);
+        assert!(!kept.misses(&settings, false));
+    }
+}

@@ -1,0 +1,125 @@
+//! How the picture is brought to the screen.
+
+use egui::accesskit::Role;
+use egui::{Key, Modifiers};
+use egui_kittest::kittest::Queryable;
+use flambeau::image::tone::{Channel, Tone, ToneCurve, auto_exposure};
+use flambeau::math::Rgb;
+use flambeau::render::Layer;
+
+use super::{BALL, Window};
+
+/// A window on the ball at its own size, with all of its samples.
+fn open() -> Option<Window> {
+    let mut window = Window::open(BALL)?;
+    window.click(Role::Button, "Fixed");
+    window.until_finished();
+    Some(window)
+}
+
+/// Holds each pixel that is seen against what `tone` makes of `pixels`: the shader against the code
+/// that writes PNGs.
+fn assert_shown(window: &mut Window, pixels: &[[f32; 4]], tone: Tone) {
+    window.harness.remove_cursor();
+    window.settle();
+    let area = window.harness.get_by_role_and_label(Role::Image, "Picture").rect();
+    let shown = window.harness.render().unwrap();
+    let enlarged = (area.width() / 64.0).min(area.height() / 48.0).floor();
+    let corner = (area.center() - enlarged * egui::vec2(32.0, 24.0)).round();
+    let encoder = tone.encoder();
+    // The legend of false color lies over the lower left corner.
+    for y in 0..32 {
+        for x in 0..64 {
+            let [r, g, b, _] = pixels[y * 64 + x];
+            let expected = encoder.encode(Rgb::new(r, g, b));
+            let at = corner + enlarged * egui::vec2(x as f32 + 0.5, y as f32 + 0.5);
+            let pixel = shown.get_pixel(at.x as u32, at.y as u32).0;
+            for (expected, pixel) in std::iter::zip(expected, pixel) {
+                assert!(
+                    expected.abs_diff(pixel) <= 1,
+                    "{tone:?} at {x},{y}: {expected} is {pixel}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn every_curve_balance_and_channel_is_that_of_saved_pictures() {
+    let Some(mut window) = open() else { return };
+    let pixels = window.app().engine().picture().unwrap().pixels.clone();
+    assert_shown(&mut window, &pixels, Tone::default());
+    for (curve, name) in [(ToneCurve::Agx, "AgX"), (ToneCurve::Linear, "Linear")] {
+        window.press(Modifiers::NONE, Key::T);
+        assert_eq!(window.document().tone.curve, curve);
+        assert!(window.has(name));
+        assert_shown(&mut window, &pixels, Tone { curve, ..Tone::default() });
+    }
+    window.press(Modifiers::NONE, Key::T);
+    window.press(Modifiers::SHIFT, Key::T);
+    let stops = Tone { channel: Channel::FalseColor, ..Tone::default() };
+    assert_eq!(window.document().tone, stops);
+    assert!(window.has("Stops from middle gray"));
+    assert_shown(&mut window, &pixels, stops);
+    window.press(Modifiers::SHIFT, Key::T);
+    for channel in [Channel::Red, Channel::Green, Channel::Blue, Channel::Luminance] {
+        window.click(Role::ComboBox, "Show");
+        window.click(Role::Button, channel.name());
+        assert_shown(&mut window, &pixels, Tone { channel, ..Tone::default() });
+    }
+}
+
+#[test]
+fn white_balance_is_typed_undone_and_that_of_saved_pictures() {
+    let Some(mut window) = open() else { return };
+    let pixels = window.app().engine().picture().unwrap().pixels.clone();
+    let field = window.harness.get_by_role_and_label(Role::SpinButton, "White balance");
+    field.click();
+    window.settle();
+    window.harness.get_by_role_and_label(Role::TextInput, "White balance").type_text("2500");
+    window.press(Modifiers::NONE, Key::Enter);
+    assert_eq!(window.document().tone.white, 2500.0);
+    assert_shown(&mut window, &pixels, Tone { white: 2500.0, ..Tone::default() });
+    window.press(Modifiers::COMMAND, Key::Z);
+    assert_eq!(window.document().tone, Tone::default());
+}
+
+#[test]
+fn a_key_exposes_for_the_picture() {
+    let Some(mut window) = open() else { return };
+    let pixels = window.app().engine().picture().unwrap().pixels.clone();
+    let exposure = auto_exposure(&pixels).unwrap();
+    assert_ne!(exposure, 0.0);
+    window.press(Modifiers::NONE, Key::A);
+    assert_eq!(window.document().tone.exposure, exposure);
+    assert_shown(&mut window, &pixels, Tone { exposure, ..Tone::default() });
+}
+
+#[test]
+fn layers_take_the_place_of_the_picture() {
+    let Some(mut window) = open() else { return };
+    for (layer, legend) in [
+        (Layer::Emission, None),
+        (Layer::Indirect, None),
+        (Layer::Depth, Some("Depth, length")),
+        (Layer::Noise, Some("Standard error, gray")),
+    ] {
+        window.click(Role::ComboBox, "Layer");
+        window.click(Role::Button, layer.name());
+        window.until("the layer is there", |app| {
+            app.engine().picture().is_some_and(|picture| picture.layer.layer == Some(layer))
+        });
+        window.settle();
+        match legend {
+            Some(legend) => assert!(window.has(legend), "{layer:?}"),
+            None => {
+                let light = window.app().engine().picture().unwrap().layer.light.clone();
+                assert_shown(&mut window, &light, Tone::default());
+            }
+        }
+    }
+    window.click(Role::ComboBox, "Layer");
+    window.click(Role::Button, "Picture");
+    let pixels = window.app().engine().picture().unwrap().pixels.clone();
+    assert_shown(&mut window, &pixels, Tone::default());
+}
