@@ -4,6 +4,7 @@
 //! `FLAMBEAU_REQUIRE_WINDOW_TESTS=1` says that there has to be one.
 
 mod compare;
+mod reference;
 mod snapshots;
 
 use std::path::{Path, PathBuf};
