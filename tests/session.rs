@@ -511,13 +511,14 @@ fn snapshots_come_at_any_time_and_can_be_resumed() {
     let film = session.snapshot().recv_timeout(PATIENCE).unwrap();
     assert_eq!(film.sample_range(), (4, 4));
     let more = Shade::new(0.75);
-    let resume = Some(Resume { film, seconds: 100.0 });
+    let resume = Some(Resume { film, seconds: 100.0, cpu_seconds: 50.0 });
     session.start(Request { resume, ..request(&more, 12, 2) });
     let picture =
         wait(&session, &published, |picture| picture.generation == 2 && picture.stats.finished);
     assert_eq!(more.calls(), u64::from(SIZE.x * SIZE.y) * 8);
     assert!((picture.pixels[77][0] - (0.25 * 4.0 + 0.75 * 8.0) / 12.0).abs() < 1e-6);
     assert!((100.0..200.0).contains(&picture.stats.seconds), "the time goes on as well");
+    assert!((50.0..100.0).contains(&picture.stats.cpu_seconds), "and so does CPU time");
 }
 
 /// What a film was begun with may not be what is at hand at first: its samples wait.
@@ -528,7 +529,7 @@ fn a_resumed_film_is_shown_and_waits_for_the_better_sampler() {
     wait(&session, &published, |picture| picture.stats.finished);
     let film = session.snapshot().recv_timeout(PATIENCE).unwrap();
     let (poor, better) = (Shade::new(0.9), Shade::new(0.75));
-    let resume = Some(Resume { film, seconds: 0.0 });
+    let resume = Some(Resume { film, seconds: 0.0, cpu_seconds: 0.0 });
     session.start(Request { resume, provisional: true, ..request(&poor, 8, 2) });
     let picture = wait(&session, &published, |picture| picture.generation == 2);
     assert_eq!((picture.pixels[77][0], picture.stats.samples_per_pixel), (0.25, 4.0));

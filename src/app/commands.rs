@@ -39,6 +39,13 @@ pub enum Command {
     SwapSides,
     CopySide,
     NextLayout,
+    CompareAsA,
+    CompareAsB,
+    SaveComparison,
+    Rectangle,
+    LoadReference,
+    PictureAsReference,
+    RemoveReference,
     KeepSnapshot,
     PreviousSnapshot,
     NextSnapshot,
@@ -53,7 +60,7 @@ use Command as C;
 
 impl Command {
     /// All of them, in the order of the help page.
-    pub const ALL: [Self; 39] = [
+    pub const ALL: [Self; 46] = [
         C::Open,
         C::OpenPath,
         C::SaveExr,
@@ -85,6 +92,13 @@ impl Command {
         C::SwapSides,
         C::CopySide,
         C::NextLayout,
+        C::CompareAsA,
+        C::CompareAsB,
+        C::SaveComparison,
+        C::Rectangle,
+        C::LoadReference,
+        C::PictureAsReference,
+        C::RemoveReference,
         C::KeepSnapshot,
         C::PreviousSnapshot,
         C::NextSnapshot,
@@ -129,6 +143,13 @@ impl Command {
             C::SwapSides => "Swap A and B",
             C::CopySide => "Copy to the other side",
             C::NextLayout => "Next view of A and B",
+            C::CompareAsA => "Compare snapshot as A",
+            C::CompareAsB => "Compare snapshot as B",
+            C::SaveComparison => "Save comparison as PNG…",
+            C::Rectangle => "Figures of a rectangle",
+            C::LoadReference => "Load reference…",
+            C::PictureAsReference => "Use picture as reference",
+            C::RemoveReference => "Remove the reference",
             C::KeepSnapshot => "Keep snapshot",
             C::PreviousSnapshot => "Previous snapshot",
             C::NextSnapshot => "Next snapshot",
@@ -185,7 +206,33 @@ impl Command {
             C::SwitchSide => "Toggles and advanced choices act on the other side from now on.",
             C::SwapSides => "Exchange A and B.",
             C::CopySide => "Give the other side the strategy of the side that is edited.",
-            C::NextLayout => "Wipe, side by side, difference, noise.",
+            C::NextLayout => {
+                "Wipe, side by side, difference, noise, and the error where there is a reference."
+            }
+            C::CompareAsA => {
+                "Set the snapshot shown as A against the live picture as B. Nothing is rendered on \
+                 its side; the arrow keys go on to others."
+            }
+            C::CompareAsB => {
+                "Set the snapshot shown as B against the live picture as A. Nothing is rendered on \
+                 its side; the arrow keys go on to others."
+            }
+            C::SaveComparison => {
+                "Save the view of A and B as you see it, with names, legend and figures, as a PNG."
+            }
+            C::Rectangle => {
+                "Drag a rectangle over the picture: noise, errors and the comparison are told of it \
+                 alone too. Escape or a click on the picture takes it away."
+            }
+            C::LoadReference => {
+                "Measure the picture, or A and B, against a picture without noise (.exr or .npy): \
+                 how far off, and where. Files can also be dropped on the window."
+            }
+            C::PictureAsReference => {
+                "Measure what is rendered from now on against the picture shown. Its own noise sets \
+                 the limit, so let it refine for long."
+            }
+            C::RemoveReference => "Measure against nothing any more.",
             C::KeepSnapshot => {
                 "Keep the picture as it is in the strip, with all that is needed to go on from it."
             }
@@ -235,6 +282,13 @@ impl Command {
             C::SwapSides => (Modifiers::NONE, Key::X),
             C::CopySide => (Modifiers::SHIFT, Key::X),
             C::NextLayout => (Modifiers::NONE, Key::V),
+            C::CompareAsA => (Modifiers::SHIFT, Key::A),
+            C::CompareAsB => (Modifiers::SHIFT, Key::B),
+            C::SaveComparison => (Modifiers::COMMAND, Key::P),
+            C::Rectangle => (Modifiers::NONE, Key::M),
+            C::LoadReference => (Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::O),
+            C::PictureAsReference => (Modifiers::COMMAND, Key::K),
+            C::RemoveReference => (Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::K),
             C::KeepSnapshot => (Modifiers::NONE, Key::K),
             C::PreviousSnapshot => (Modifiers::NONE, Key::ArrowLeft),
             C::NextSnapshot => (Modifiers::NONE, Key::ArrowRight),

@@ -20,7 +20,7 @@ use crate::image::tone::Tone;
 use crate::render::{Layer, Picture};
 use crate::scene::{self, Settings};
 use cells::{Gathering, Source};
-pub use legend::Legend;
+pub use legend::{Legend, show as show_legends};
 use ray::Inspector;
 
 /// What the cells drawn over the picture are colored by.
@@ -107,14 +107,8 @@ impl Diagnostics {
     }
 }
 
-/// Where a picture position, in its pixels, lies in the window.
-fn to_window(view: &View, at: glam::Vec2) -> egui::Pos2 {
-    let at = (view.placement.corner + at * view.placement.scale) / view.factor;
-    view.rect.min + egui::vec2(at.x, at.y)
-}
-
 /// The part of the window that the picture covers.
 fn picture_rect(view: &View, size: UVec2) -> Rect {
-    let corners = [glam::Vec2::ZERO, size.as_vec2()].map(|corner| to_window(view, corner));
+    let corners = [glam::Vec2::ZERO, size.as_vec2()].map(|corner| view.window_at(corner));
     Rect::from_min_max(corners[0], corners[1]).intersect(view.rect)
 }

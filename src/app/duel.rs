@@ -2,6 +2,7 @@
 //! both, and what is shown of them.
 
 pub mod maps;
+pub mod part;
 
 use std::sync::Arc;
 
@@ -13,12 +14,14 @@ use super::display::Look;
 use super::engine::{Engine, News};
 use super::state::{Compared, Document, Side};
 use super::viewport::Shown;
+use super::yardstick::Measure;
 use crate::error::Result;
 use crate::image::tone::Tone;
-use crate::render::compare::{Comparison, NoiseHistory};
+use crate::render::Picture;
+use crate::render::compare::{Area, Comparison, NoiseHistory};
 use crate::render::session::{Seat, Sharing};
-use crate::render::{Picture, RenderStats};
 use maps::{Difference, Map, MapKind, Noise};
+use part::{Part, PartTask};
 
 /// The key that shows the other side while it is held.
 pub const FLIP: Key = Key::H;
@@ -35,20 +38,36 @@ pub enum Layout {
     Difference(Difference),
     /// How noisy they are.
     Noise(Noise),
+    /// How far one of them is from the reference.
+    Error(Measure, Side),
 }
 
 impl Layout {
-    /// One of each kind.
-    pub const ALL: [Self; 4] = [
+    /// One of each kind; the last one needs a reference.
+    pub const ALL: [Self; 5] = [
         Self::Wipe,
         Self::Beside,
         Self::Difference(Difference::Signed),
         Self::Noise(Noise::Of(Side::A)),
+        Self::Error(Measure::RelMse, Side::A),
     ];
 
-    /// The next kind.
-    pub fn next(self) -> Self {
-        Self::ALL[(self.kind() + 1) % Self::ALL.len()]
+    /// The kinds that there are, of two pictures or of one, with a reference or without.
+    pub fn kinds(of_two: bool, with_reference: bool) -> Vec<Self> {
+        let mut kinds = Self::ALL.to_vec();
+        kinds.retain(|kind| match kind {
+            Self::Wipe => true,
+            Self::Error(..) => with_reference,
+            _ => of_two,
+        });
+        kinds
+    }
+
+    /// The next of some kinds.
+    pub fn next(self, kinds: &[Self]) -> Self {
+        let place = kinds.iter().position(|kind| kind.kind() == self.kind());
+        let next = place.map_or(0, |place| place + 1);
+        kinds.get(next).or(kinds.first()).copied().unwrap_or_default()
     }
 
     /// Its place among the kinds.
@@ -58,22 +77,38 @@ impl Layout {
             Self::Beside => 1,
             Self::Difference(_) => 2,
             Self::Noise(_) => 3,
+            Self::Error(..) => 4,
         }
     }
 
-    /// What is computed for it.
+    /// What is computed for it of two pictures.
     fn map(self) -> Option<MapKind> {
         match self {
-            Self::Wipe | Self::Beside => None,
+            Self::Wipe | Self::Beside | Self::Error(..) => None,
             Self::Difference(difference) => Some(MapKind::Difference(difference)),
             Self::Noise(noise) => Some(MapKind::Noise(noise)),
         }
     }
 }
 
+/// A picture kept earlier, as one side against the live one.
+#[derive(Clone, Debug)]
+pub struct Stored {
+    /// The side.
+    pub side: Side,
+    /// What it is called.
+    pub name: String,
+    /// The picture with its variance, once it is read.
+    pub picture: Option<Arc<Picture>>,
+    /// Whether its strategy was biased.
+    pub is_biased: bool,
+}
+
 /// The second side and what is shown of both.
 pub struct Duel {
     rival: Option<Engine>,
+    /// A picture kept earlier in place of the second side.
+    pub stored: Option<Stored>,
     /// The comparison of the last frame.
     last: Option<Compared>,
     /// Of the two sessions while there are two.
@@ -85,8 +120,11 @@ pub struct Duel {
     pub divider: f32,
     map: Background<Pair, Option<Map>>,
     figures: Background<[Arc<Picture>; 2], Comparison>,
+    part: Background<PartTask, Part>,
     /// How the noise of A and of B went down.
     histories: [NoiseHistory; 2],
+    /// The side of the main engine when they were last added to.
+    noted: Option<Side>,
 }
 
 /// Both pictures, and what is to be made of them.
@@ -108,6 +146,7 @@ impl Duel {
     pub fn new(threads: Option<usize>) -> Self {
         Self {
             rival: None,
+            stored: None,
             last: None,
             seats: Sharing::seats(),
             threads,
@@ -115,8 +154,21 @@ impl Duel {
             divider: 0.5,
             map: Background::default(),
             figures: Background::default(),
+            part: Background::default(),
             histories: Default::default(),
+            noted: None,
         }
+    }
+
+    /// The side of the main engine, where there are two.
+    pub fn main_side(&self) -> Option<Side> {
+        let stored = self.stored.as_ref().map(|stored| stored.side.other());
+        stored.or(self.last.map(|compared| compared.main))
+    }
+
+    /// Whether there are two sides.
+    pub fn is_on(&self) -> bool {
+        self.rival.is_some() || self.stored.is_some()
     }
 
     /// The engine of the side that the main one does not render, while there is one.
@@ -159,6 +211,7 @@ impl Duel {
         let mut news = Vec::new();
         let Some(compared) = document.compared else {
             self.end(document, engine);
+            self.update_told(ctx, engine);
             return Ok(news);
         };
         self.last = Some(compared);
@@ -173,7 +226,6 @@ impl Duel {
             self.rival = Some(rival);
         }
         self.seats[0].set_share(compared.share);
-        engine.set_shows_variance(true);
         let settings = document.settings_of(compared.main.other());
         if let Some(rival) = &mut self.rival {
             rival.set_shows_variance(true);
@@ -184,23 +236,25 @@ impl Duel {
                 ctx.request_repaint_after(wait);
             }
         }
+        self.update_told(ctx, engine);
+        Ok(news)
+    }
+
+    /// Brings map and figures in line with the pictures.
+    fn update_told(&mut self, ctx: &Context, engine: &Engine) {
         self.update_map(ctx, engine);
         self.update_figures(ctx, engine);
-        Ok(news)
     }
 
     /// Ends a comparison. Not where another scene was opened: that goes on where it was.
     fn end(&mut self, document: &Document, engine: &mut Engine) {
+        let last = self.last.take();
         let Some(mut rival) = self.rival.take() else { return };
-        let edited = self.last.take().is_some_and(|last| last.active != last.main);
+        let edited = last.is_some_and(|last| last.active != last.main);
         if edited && rival.renders(&document.settings) {
             std::mem::swap(engine, &mut rival);
         }
         engine.session().take_seat(None);
-        engine.set_shows_variance(false);
-        self.map = Background::default();
-        self.figures = Background::default();
-        self.histories = Default::default();
     }
 
     fn update_map(&mut self, ctx: &Context, engine: &Engine) {
@@ -214,17 +268,45 @@ impl Duel {
     fn update_figures(&mut self, ctx: &Context, engine: &Engine) {
         let pictures =
             self.pictures(engine).filter(|pictures| pictures[0].size == pictures[1].size);
-        if let Some(pictures) = &pictures {
-            for (history, picture) in self.histories.iter_mut().zip(pictures) {
-                note(history, &picture.stats);
-            }
-        }
+        self.note(pictures.as_ref());
         let same = |a: &[Arc<Picture>; 2], b: &[Arc<Picture>; 2]| {
             Arc::ptr_eq(&a[0], &b[0]) && Arc::ptr_eq(&a[1], &b[1])
         };
         let make = |[a, b]: &[Arc<Picture>; 2]| Comparison::of_pictures([a, b], None);
         let wake = ctx.clone();
         self.figures.update(pictures, same, make, move || wake.request_repaint());
+    }
+
+    /// Adds the noise of the pictures to the histories. A snapshot has no past: it is a point.
+    fn note(&mut self, pictures: Option<&[Arc<Picture>; 2]>) {
+        let main = self.main_side();
+        match (std::mem::replace(&mut self.noted, main), main) {
+            (then, now) if then == now => {}
+            (Some(_), Some(_)) => self.histories.swap(0, 1),
+            _ => self.histories = Default::default(),
+        }
+        let stored = self.stored.as_ref().map(|stored| stored.side);
+        let sides = std::iter::zip([Side::A, Side::B], pictures.into_iter().flatten());
+        for (history, (side, picture)) in self.histories.iter_mut().zip(sides) {
+            if stored == Some(side) {
+                *history = NoiseHistory::default();
+            }
+            if let Some(noise) = picture.stats.noise {
+                history.follow(picture.stats.cpu_seconds, noise);
+            }
+        }
+    }
+
+    /// Brings the figures of a rectangle in line with what is looked at, one picture or both.
+    pub fn update_part(&mut self, ctx: &Context, pictures: Vec<Arc<Picture>>, area: Option<Area>) {
+        let task = area.map(|area| PartTask { pictures, area });
+        let wake = ctx.clone();
+        self.part.update(task, PartTask::same, Part::of, move || wake.request_repaint());
+    }
+
+    /// What is known of the rectangle, once it is.
+    pub fn part(&self) -> Option<&Part> {
+        self.part.done().map(|(_, part)| part)
     }
 
     /// What is known of both sides, once both have a picture.
@@ -239,20 +321,33 @@ impl Duel {
 
     /// The pictures of A and B, once both have one.
     pub fn pictures(&self, engine: &Engine) -> Option<[Arc<Picture>; 2]> {
-        let (main, rival) = (engine.picture()?.clone(), self.rival.as_ref()?.picture()?.clone());
-        let a_is_main = self.last.is_some_and(|compared| compared.main == Side::A);
-        Some(if a_is_main { [main, rival] } else { [rival, main] })
+        let main = engine.picture()?.clone();
+        let (other, main_is_a) = match &self.stored {
+            Some(stored) => (stored.picture.clone()?, stored.side == Side::B),
+            None => {
+                let rival = self.rival.as_ref()?.picture()?.clone();
+                (rival, self.last.is_some_and(|compared| compared.main == Side::A))
+            }
+        };
+        Some(if main_is_a { [main, other] } else { [other, main] })
     }
 
-    /// The map that is shown, while one is.
+    /// The map of both that is shown, while one is.
     pub fn map(&self) -> Option<&Map> {
         let wanted = self.layout.map()?;
         let (pair, map) = self.map.done()?;
         map.as_ref().filter(|_| pair.kind == wanted)
     }
 
-    /// What the viewport shows of both sides; `None` where there is only one.
-    pub fn shown(&self, ctx: &Context, engine: &Engine, tone: Tone, active: Side) -> Option<Shown> {
+    /// What the viewport shows of both sides, `map` in their place if there is one; `None` where
+    /// there is only one.
+    pub fn shown(
+        &self,
+        ctx: &Context,
+        engine: &Engine,
+        (tone, active): (Tone, Side),
+        map: Option<&Map>,
+    ) -> Option<Shown> {
         let pictures = self.pictures(engine)?;
         let look = Look::Picture(tone);
         if ctx.input(|input| input.key_down(FLIP)) && !ctx.text_edit_focused() {
@@ -260,7 +355,7 @@ impl Duel {
             let other = if active == Side::A { b } else { a };
             return Some(Shown::One(other, look));
         }
-        Some(match (self.layout, self.map()) {
+        Some(match (self.layout, map) {
             (Layout::Wipe, _) => Shown::Wipe(pictures, look, self.divider),
             (Layout::Beside, _) => Shown::Beside(pictures, look),
             (_, Some(map)) => Shown::One(map.picture.clone(), map.look),
@@ -269,18 +364,5 @@ impl Duel {
                 Shown::One(b, look)
             }
         })
-    }
-}
-
-/// Adds what a picture says to a history, which begins anew where the render did.
-fn note(history: &mut NoiseHistory, stats: &RenderStats) {
-    let seconds = stats.cpu_seconds;
-    match history.points().last() {
-        Some(last) if seconds < last[0] => *history = NoiseHistory::default(),
-        Some(last) if seconds == last[0] => return,
-        _ => {}
-    }
-    if let Some(noise) = stats.noise {
-        history.push(seconds, noise);
     }
 }

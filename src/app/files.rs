@@ -17,6 +17,10 @@ pub enum Purpose {
     SavePng,
     /// To save the settings.
     SaveScene,
+    /// To measure against a picture.
+    Reference,
+    /// To save a comparison as shown, with its figures.
+    SaveComparison,
 }
 
 impl Purpose {
@@ -27,15 +31,22 @@ impl Purpose {
             Self::SaveExr => Command::SaveExr,
             Self::SavePng => Command::SavePng,
             Self::SaveScene => Command::SaveScene,
+            Self::Reference => Command::LoadReference,
+            Self::SaveComparison => Command::SaveComparison,
         }
     }
 
-    /// The ending of what is saved; none for opening.
+    /// Whether a file is to be there already.
+    pub fn reads(self) -> bool {
+        matches!(self, Self::Open | Self::Reference)
+    }
+
+    /// The ending of what is saved; none for what is read.
     pub fn extension(self) -> Option<&'static str> {
         match self {
-            Self::Open => None,
+            Self::Open | Self::Reference => None,
             Self::SaveExr => Some("exr"),
-            Self::SavePng => Some("png"),
+            Self::SavePng | Self::SaveComparison => Some("png"),
             Self::SaveScene => Some("toml"),
         }
     }
@@ -91,9 +102,9 @@ impl Dialog {
         let (sender, answer) = mpsc::channel();
         std::thread::Builder::new().name("dialog".to_owned()).spawn(move || {
             let asked = Instant::now();
-            let choice = match purpose {
-                Purpose::Open => dialog.pick_file(),
-                _ => dialog.save_file(),
+            let choice = match purpose.reads() {
+                true => dialog.pick_file(),
+                false => dialog.save_file(),
             };
             let answer = match choice {
                 Some(path) => Answer::Chosen(purpose, purpose.complete(path)),
@@ -129,8 +140,11 @@ fn describe(purpose: Purpose, suggested: &Path) -> rfd::FileDialog {
                 .add_filter("Scenes, volumes and snapshots", &["toml", "vdb", "exr"])
                 .add_filter("All files", &["*"]);
         }
+        Purpose::Reference => {
+            return dialog.add_filter("Pictures without noise", &["exr", "npy"]);
+        }
         Purpose::SaveExr => dialog.add_filter("OpenEXR", &["exr"]),
-        Purpose::SavePng => dialog.add_filter("PNG", &["png"]),
+        Purpose::SavePng | Purpose::SaveComparison => dialog.add_filter("PNG", &["png"]),
         Purpose::SaveScene => dialog.add_filter("Scene", &["toml"]),
     }
     .set_file_name(suggested.file_name().unwrap_or_default().to_string_lossy())

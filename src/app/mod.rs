@@ -4,7 +4,9 @@
 //! - `state`, `history`: what is edited, and undo; `commands`: everything that can be asked for.
 //! - `engine`, `loader`, `prober`: from edits to pictures, without ever blocking the window.
 //! - `viewport`, `navigation`, `zoom`, `display`, `readout`: the picture and the hand on it.
-//! - `duel`: two strategies on one scene, side by side.
+//! - `duel`: two strategies on one scene, or a snapshot and the live picture, side by side.
+//! - `rectangle`, `yardstick`: a part of the picture and a reference that figures are told of;
+//!   `sheet`: all that in a file.
 //! - `diagnostics`: cells over the picture and maps in its place, to understand a render.
 //! - `panels`, `widgets`, `notices`, `theme`: what is around it.
 //! - `files`, `saver`, `reopen`: choosing, writing and going on from files; `data`, `remembered`: what
@@ -29,9 +31,11 @@ mod notices;
 mod panels;
 mod prober;
 mod readout;
+mod rectangle;
 mod remembered;
 mod reopen;
 mod saver;
+mod sheet;
 mod snapshots;
 mod state;
 mod theme;
@@ -39,6 +43,7 @@ mod up_axis;
 mod viewport;
 mod widgets;
 mod window;
+mod yardstick;
 mod zoom;
 
 pub use commands::Command;
@@ -49,6 +54,7 @@ pub use files::Dialogs;
 pub use notices::{Level, Notice, Notices};
 pub use state::{Compared, Document, Editor, Side};
 pub use window::{App, Options};
+pub use yardstick::Measure;
 
 use crate::error::{Error, Result};
 

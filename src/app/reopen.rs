@@ -47,7 +47,8 @@ pub fn open(source: &str) -> Result<(Settings, Reopened)> {
             for doubt in doubts {
                 text.push_str(&format!("\n{doubt}."));
             }
-            let resume = Some(Resume { film, seconds: header.wall_seconds });
+            let (seconds, cpu_seconds) = (header.wall_seconds, header.cpu_seconds_render);
+            let resume = Some(Resume { film, seconds, cpu_seconds });
             Reopened { resume, notice: Notice { level: Level::Done, text } }
         }
         Err(reason) => {

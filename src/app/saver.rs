@@ -5,6 +5,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, mpsc};
 
+use super::sheet::SavedView;
 use crate::error::{Error, Result};
 use crate::files;
 use crate::image::exr::{self, Header};
@@ -22,8 +23,8 @@ pub enum Content {
         film: mpsc::Receiver<Film>,
         /// What the film shows; its size, seed and limit are those of the film.
         settings: Settings,
-        /// Seconds spent on it.
-        seconds: f64,
+        /// Seconds spent on it, and CPU time.
+        seconds: [f64; 2],
     },
     /// The picture as shown.
     Png {
@@ -43,6 +44,8 @@ pub enum Content {
         /// How it is shown.
         tone: Tone,
     },
+    /// A view with its figures.
+    View(Box<SavedView>),
 }
 
 /// A save under way.
@@ -132,6 +135,7 @@ fn write(path: &Path, content: Content) -> Result<()> {
                 Err(error) => Err(Error::io(path, error)),
             })
         }
+        Content::View(view) => view.write(path),
         Content::Shown { picture, tone } => png::write(path, picture.size, &picture.pixels, tone),
     }
 }
@@ -144,8 +148,8 @@ pub fn receive(path: &Path, film: &mpsc::Receiver<Film>) -> Result<Film> {
     })
 }
 
-/// What the snapshot says about how it came about.
-pub fn header(settings: &Settings, seconds: f64) -> Result<Header> {
+/// What the snapshot says about how it came about, in so many seconds and so many of CPU time.
+pub fn header(settings: &Settings, [seconds, cpu_seconds]: [f64; 2]) -> Result<Header> {
     let strategy = toml::to_string(&settings.strategy)
         .map_err(|error| Error::invalid("", "strategy", error.to_string()))?;
     Ok(Header {
@@ -154,6 +158,7 @@ pub fn header(settings: &Settings, seconds: f64) -> Result<Header> {
         seed: settings.film.seed,
         version: env!("CARGO_PKG_VERSION").to_owned(),
         wall_seconds: seconds,
+        cpu_seconds_render: cpu_seconds,
         files: scene::fingerprints(settings)?,
         ..Header::default()
     })

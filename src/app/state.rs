@@ -118,7 +118,7 @@ impl Document {
 /// From the seed of A to that of B, where B has its own.
 const OTHER_SEED: u64 = 1 << 32;
 
-/// What a side is called.
+/// What a strategy is called.
 pub fn strategy_name(strategy: &Strategy) -> &'static str {
     match strategy.preset() {
         _ if strategy.is_biased() => "ray marching",

@@ -9,6 +9,7 @@ use glam::{UVec2, Vec2, Vec3};
 use super::display::{self, Look};
 use super::navigation::Pose;
 use super::readout;
+use super::rectangle::Rectangle;
 use super::state::Editor;
 use super::theme::color;
 use super::zoom::{Placement, Zoom};
@@ -105,6 +106,19 @@ pub struct View {
     pub clicked: Option<UVec2>,
 }
 
+impl View {
+    /// The picture position, in its pixels, under a place in the window.
+    pub fn picture_at(&self, at: egui::Pos2) -> Vec2 {
+        self.placement.picture_from_viewport(from_egui(at - self.rect.min) * self.factor)
+    }
+
+    /// Where a picture position, in its pixels, lies in the window.
+    pub fn window_at(&self, at: Vec2) -> egui::Pos2 {
+        let at = (self.placement.corner + at * self.placement.scale) / self.factor;
+        self.rect.min + egui::vec2(at.x, at.y)
+    }
+}
+
 /// The state of the viewport between frames.
 #[derive(Debug, Default)]
 pub struct Viewport {
@@ -159,9 +173,15 @@ impl Viewport {
         self.zoom.place(picture, self.size).scale
     }
 
-    /// Shows what there is in the rest of `ui` and lets the hand move camera and zoom. Gives where
-    /// the picture lies; of several the first.
-    pub fn show(&mut self, ui: &mut Ui, editor: &mut Editor, shown: &Shown) -> Option<View> {
+    /// Shows what there is in the rest of `ui` and lets the hand move camera and zoom, or draw the
+    /// rectangle. Gives where the pictures lie, those of a wipe as one.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        editor: &mut Editor,
+        shown: &Shown,
+        rectangle: &mut Rectangle,
+    ) -> Vec<View> {
         let rect = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(rect, Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Picture"));
@@ -175,7 +195,10 @@ impl Viewport {
         let area = hovered.map_or(rect, |pane| pane.area);
         self.size = from_egui(area.size()) * factor;
         self.pointer = under.map(|at| from_egui(at - area.min) * factor);
-        self.navigate(ui, &response, editor, hovered.map(|pane| pane.picture.size));
+        let view = hovered.map(|pane| self.view(pane, factor));
+        if !rectangle.draw(ui, &response, view.as_ref()) {
+            self.navigate(ui, &response, editor, hovered.map(|pane| pane.picture.size));
+        }
         self.probe = None;
         if panes.is_empty() {
             ui.painter().rect_filled(rect, 0.0, color::SURROUND);
@@ -183,7 +206,7 @@ impl Viewport {
         for (index, pane) in panes.iter().enumerate() {
             self.paint(ui, pane, index);
         }
-        let hovered = hovered?;
+        let Some(hovered) = hovered else { return Vec::new() };
         let placement = self.zoom.place(hovered.picture.size, self.size);
         self.probe = self.pointer.and_then(|at| probe(hovered.picture, placement, at));
         if let Some(probe) = self.probe
@@ -192,16 +215,18 @@ impl Viewport {
             outline(ui, hovered.area, placement, probe.pixel, factor);
         }
         let clicked = response.clicked().then_some(self.probe).flatten().map(|probe| probe.pixel);
-        let first = panes.first()?;
-        let size = first.picture.size;
-        Some(View {
-            rect: first.area,
-            placement: self.zoom.place(size, self.size),
-            factor,
-            size,
-            hovered: response.hovered(),
-            clicked,
-        })
+        let hovers = response.hovered();
+        let view = |pane| View { hovered: hovers, clicked, ..self.view(pane, factor) };
+        let mut views: Vec<View> = panes.iter().map(view).collect();
+        views.dedup_by_key(|view| view.rect);
+        views
+    }
+
+    /// Where the picture of a pane lies.
+    fn view(&self, pane: &Pane<'_>, factor: f32) -> View {
+        let size = pane.picture.size;
+        let placement = self.zoom.place(size, self.size);
+        View { rect: pane.area, placement, factor, size, hovered: false, clicked: None }
     }
 
     fn paint(&self, ui: &Ui, pane: &Pane<'_>, index: usize) {

@@ -4,8 +4,10 @@ mod duel;
 mod execute;
 mod keeping;
 mod layout;
+mod measures;
 mod paths;
 mod stored;
+mod view;
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -24,12 +26,14 @@ use super::frame_stats::FrameStats;
 use super::notices::{Level, Notice, Notices};
 use super::panels::bars::PathBar;
 use super::panels::palette::Palette;
+use super::rectangle::Rectangle;
 use super::remembered::Remembered;
 use super::saver::Saver;
 use super::snapshots::Snapshots;
-use super::state::{Compared, Editor};
+use super::state::{Compared, Editor, Side};
 use super::theme;
 use super::viewport::Viewport;
+use super::yardstick::Yardstick;
 use crate::error::Result;
 use crate::scene::DEFAULT_SCENE;
 
@@ -81,6 +85,12 @@ pub struct App {
     snapshots: Snapshots,
     /// The snapshot that a path is being asked for, where one was shown.
     subject: Option<String>,
+    rectangle: Rectangle,
+    yardstick: Yardstick,
+    /// The side of the snapshot shown, while that is compared with the live picture.
+    versus: Option<Side>,
+    /// A dropped picture, until it is said what it is for.
+    dropped: Option<PathBuf>,
 }
 
 impl App {
@@ -125,6 +135,10 @@ impl App {
             remembered,
             kept: keeping::Kept::default(),
             subject: None,
+            rectangle: Rectangle::default(),
+            yardstick: Yardstick::new(options.threads)?,
+            versus: None,
+            dropped: None,
         })
     }
 
@@ -141,6 +155,16 @@ impl App {
     /// The other side of a comparison.
     pub fn duel(&self) -> &Duel {
         &self.duel
+    }
+
+    /// The rectangle that figures are told of.
+    pub fn rectangle(&self) -> &Rectangle {
+        &self.rectangle
+    }
+
+    /// The reference and the errors against it.
+    pub fn yardstick(&self) -> &Yardstick {
+        &self.yardstick
     }
 
     /// The messages shown.
@@ -162,6 +186,10 @@ impl App {
         self.update_snapshots(&ctx);
         self.editor.begin_frame(&ctx);
         let mut commands = Command::pressed(&ctx);
+        if self.path_bar.is_some() || self.dropped.is_some() {
+            // The key closes what is open in front.
+            commands.retain(|command| *command != Command::LivePicture);
+        }
         self.layout(ui, &mut commands);
         for command in commands {
             self.execute(&ctx, command);
@@ -196,6 +224,11 @@ impl App {
                     self.viewport.zoom = Default::default();
                     self.notices = Notices::default();
                     self.source = self.name_of(source);
+                    self.versus = None;
+                    self.rectangle.remove();
+                    if let Err(error) = self.yardstick.open(ctx, &self.source) {
+                        self.notices.failed(error.to_string());
+                    }
                     if let Some(Notice { level, text }) = reopened {
                         let text = format!("{}: {text}", self.title());
                         self.notices.push(Notice { level, text });
@@ -232,7 +265,7 @@ impl App {
         }
         let dropped = ctx.input(|input| input.raw.dropped_files.last().cloned());
         if let Some(file) = dropped {
-            self.open_unless_lost(&file.path().to_string_lossy());
+            self.take_dropped(ctx, file.path());
         }
     }
 
@@ -248,6 +281,7 @@ impl App {
 
     fn bring_up_to_date(&mut self, ctx: &Context) {
         self.diagnostics.update(ctx, &mut self.engine);
+        self.update_versus();
         let Some(size) = self.film_size() else { return };
         let mut news = Vec::new();
         let document = &self.editor.document;
@@ -269,6 +303,7 @@ impl App {
             ctx.request_repaint_after(wait.max(Duration::from_millis(1)));
         }
         self.take_in(ctx, news);
+        self.update_measures(ctx);
     }
 
     /// The size of the film: its own or the window's; `None` before the first frame.
@@ -285,7 +320,9 @@ impl App {
         if let Some(stats) = &mut self.stats {
             stats.started(generation);
         }
-        // Whoever asks for another picture wants to see it.
-        self.snapshots.strip.show(None);
+        // Whoever asks for another picture wants to see it; beside a snapshot it is seen already.
+        if self.versus.is_none() {
+            self.snapshots.strip.show(None);
+        }
     }
 }

@@ -58,6 +58,19 @@ impl Canvas {
         Self { size, codes: color::BACKGROUND.repeat(pixels) }
     }
 
+    /// Width and height in pixels.
+    pub fn size(&self) -> UVec2 {
+        self.size
+    }
+
+    /// The width of a line of text in pixels.
+    pub fn width_of(text: &str) -> Result<i32> {
+        load_font()?;
+        let (width, _) =
+            (FONT, LETTERS).into_font().box_size(text).map_err(|e| failed(&e.to_string()))?;
+        Ok(width as i32)
+    }
+
     /// Colors one pixel; off the canvas, none.
     pub fn put(&mut self, at: UVec2, color: [u8; 3]) {
         if at.cmplt(self.size).all() {

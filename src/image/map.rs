@@ -4,7 +4,8 @@ use std::path::Path;
 
 use glam::UVec2;
 
-use super::drawing::{Align, Canvas, color};
+use super::drawing::Canvas;
+use super::legend::{self, Legend};
 use super::ramp::{self, Scale};
 use crate::error::Result;
 
@@ -35,12 +36,6 @@ pub struct Map<'a> {
 
 /// The least width of the picture; smaller maps are enlarged, pixel by pixel.
 const LEAST_WIDTH: u32 = 640;
-/// Height of the legend.
-const LEGEND: u32 = 112;
-/// Space around what is in it.
-const MARGIN: i32 = 16;
-/// Height of the bar of colors.
-const BAR: i32 = 14;
 
 impl Colors {
     fn of(&self, value: f32) -> [u8; 3] {
@@ -68,7 +63,7 @@ impl Colors {
 pub fn write(path: &Path, map: &Map<'_>) -> Result<()> {
     let zoom = LEAST_WIDTH.div_ceil(map.size.x.max(1));
     let shown = map.size * zoom;
-    let mut canvas = Canvas::new(shown + UVec2::new(0, LEGEND));
+    let mut canvas = Canvas::new(shown + UVec2::new(0, legend::HEIGHT));
     for y in 0..shown.y {
         for x in 0..shown.x {
             let index = (y / zoom) as usize * map.size.x as usize + (x / zoom) as usize;
@@ -76,25 +71,15 @@ pub fn write(path: &Path, map: &Map<'_>) -> Result<()> {
             canvas.put(UVec2::new(x, y), map.colors.of(value));
         }
     }
-    legend(&mut canvas, map, shown)?;
+    let at = |place| map.colors.at(place);
+    let legend = Legend {
+        title: map.title,
+        note: map.note,
+        color: &|place| map.colors.of(at(place)),
+        ends: [0.0, 0.5, 1.0].map(|place| (map.label)(f64::from(at(place)))),
+    };
+    legend.draw(&mut canvas, shown.y as i32)?;
     canvas.write(path)
-}
-
-fn legend(canvas: &mut Canvas, map: &Map<'_>, shown: UVec2) -> Result<()> {
-    let (left, right, top) = (MARGIN, shown.x as i32 - MARGIN, shown.y as i32);
-    canvas.text((left, top + 18), Align::Left, color::TEXT, map.title)?;
-    let bar = top + 36;
-    for x in left..right {
-        let place = (x - left) as f32 / (right - left - 1).max(1) as f32;
-        let color = map.colors.of(map.colors.at(place));
-        (bar..bar + BAR).for_each(|y| canvas.put(UVec2::new(x as u32, y as u32), color));
-    }
-    let ends = [(0.0, left, Align::Left), (0.5, (left + right) / 2, Align::Center)];
-    for (place, x, align) in ends.into_iter().chain([(1.0, right, Align::Right)]) {
-        let text = (map.label)(f64::from(map.colors.at(place)));
-        canvas.text((x, bar + BAR + 12), align, color::TEXT, &text)?;
-    }
-    canvas.text((left, bar + BAR + 36), Align::Left, color::DIM, map.note)
 }
 
 #[cfg(test)]
@@ -116,7 +101,7 @@ mod tests {
         let values = [0.01, 0.1, 1.0, 0.0, 5.0, 0.001];
         let picture = draw(Colors::Logarithmic(scale), &values);
         let zoom = picture.width() / 3;
-        assert!(zoom > 200 && picture.height() == 2 * zoom + LEGEND);
+        assert!(zoom > 200 && picture.height() == 2 * zoom + legend::HEIGHT);
         let at = |picture: &image::RgbImage, x: u32, y: u32| {
             picture.get_pixel(x * zoom + 7, y * zoom + zoom - 1).0
         };

@@ -2,7 +2,8 @@
 //!
 //! [`exr`] keeps everything and can be continued; [`npy`] is the beauty for scripts; [`png`] is what
 //! the screen shows, through the curves of [`tone`]. [`ramp`] turns numbers into colors, [`map`] a
-//! number a pixel into a picture with its legend, [`plot`] numbers over time into curves.
+//! number a pixel into a picture with its [`legend`], [`plot`] numbers over time into curves;
+//! [`sheet`] is a view with its figures below.
 //! [`metrics`] tell how far a picture is from a [`reference`](mod@reference).
 
 mod drawing;
@@ -11,6 +12,7 @@ mod exr_color;
 mod exr_header;
 mod exr_layout;
 pub mod figures;
+pub mod legend;
 pub mod map;
 pub mod metrics;
 pub mod npy;
@@ -19,6 +21,7 @@ pub mod plot;
 pub mod png;
 pub mod ramp;
 pub mod reference;
+pub mod sheet;
 pub mod tone;
 
 pub use reference::Reference;

@@ -125,6 +125,12 @@ pub fn srgb_from_linear(linear: f32) -> f32 {
     if linear <= 0.003_130_8 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
+/// The display-linear value in 0..=1 of an sRGB code in 0..=1: the inverse of
+/// [`srgb_from_linear`].
+pub fn linear_from_srgb(code: f32) -> f32 {
+    if code <= 0.040_45 { code / 12.92 } else { ((code + 0.055) / 1.055).powf(2.4) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -144,6 +150,10 @@ mod tests {
         assert_eq!(linear.encode(Rgb::splat(f32::INFINITY)), [255; 3]);
         let brighter = Tone { exposure: 1.0, ..LINEAR }.encoder();
         assert_eq!(brighter.encode(Rgb::splat(0.25)), [188; 3]);
+        for code in 0..=255_u8 {
+            let value = linear_from_srgb(f32::from(code) / 255.0);
+            assert_eq!(linear.encode(Rgb::splat(value)), [code; 3]);
+        }
     }
 
     #[test]

@@ -42,6 +42,22 @@ pub struct Side {
     pub noise: Option<f64>,
 }
 
+impl Side {
+    /// The figures of a picture that brought its variance along, over the pixels of `area`, or all.
+    /// Of its pixels it is known only how many samples each has at least; the CPU time is that of
+    /// the whole picture.
+    ///
+    /// Works on the threads of the calling pool, with the same result for any number of them.
+    pub fn of_picture(picture: &Picture, area: Option<Area>) -> Self {
+        let area = area.unwrap_or(Area::of(picture.size)).within(picture.size);
+        let tallies: Vec<Tally> =
+            area.blocks().par_iter().map(|block| Tally::of(picture, block)).collect();
+        let whole = tallies.iter().fold(Tally::default(), |sum, tally| sum.plus(tally));
+        let stats = &picture.stats;
+        Self { samples_per_pixel: stats.samples_per_pixel, ..whole.side(stats.cpu_seconds) }
+    }
+}
+
 /// What two films say about each other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {

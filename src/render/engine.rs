@@ -56,6 +56,11 @@ impl Engine {
         (self.sampler, self.seconds, self.cpu_seconds) = (sampler, 0.0, 0.0);
     }
 
+    /// Counts CPU time in, in seconds, that the samples it began with took.
+    pub fn count_in(&mut self, cpu_seconds: f64) {
+        self.cpu_seconds += cpu_seconds;
+    }
+
     /// Goes on with another sampler of the same picture.
     pub fn go_on_with(&mut self, sampler: Arc<dyn PixelSampler>) {
         self.sampler = sampler;

@@ -46,6 +46,8 @@ pub struct Resume {
     pub film: Film,
     /// Seconds of rendering that they took.
     pub seconds: f64,
+    /// CPU time that the sampling threads spent on them, in seconds.
+    pub cpu_seconds: f64,
 }
 
 /// A progressive render in the background. Dropping it ends it within one sample a thread.

@@ -10,7 +10,7 @@ use super::{BALL, Window};
 
 impl Window {
     /// Runs frames until both sides have finished their few samples and are compared.
-    fn until_compared(&mut self) {
+    pub(super) fn until_compared(&mut self) {
         self.until("both sides are compared", |app| {
             let finished = |engine: &flambeau::app::Engine| {
                 let latest = engine.is_current() && !engine.is_building();

@@ -35,7 +35,9 @@ impl Window {
     }
 
     fn until_volume_is(&mut self, name: &str) {
-        self.until("the scene is open", |app| app.editor().document.settings.volume[0].name == name);
+        self.until("the scene is open", |app| {
+            app.editor().document.settings.volume[0].name == name
+        });
     }
 
     /// Whether the window asked to close, or not to, in a frame in which its button was pressed.

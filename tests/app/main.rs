@@ -6,6 +6,7 @@
 mod compare;
 mod display;
 mod keeping;
+mod reference;
 mod snapshots;
 
 use std::path::{Path, PathBuf};

@@ -14,7 +14,7 @@ use super::*;
 
 impl Window {
     /// Keeps the picture and waits until it is in the strip under this name.
-    fn keep(&mut self, name: &str) {
+    pub(super) fn keep(&mut self, name: &str) {
         self.press(Modifiers::NONE, Key::K);
         self.until_there_is(&format!("Snapshot {name}"));
     }
@@ -49,7 +49,7 @@ impl Window {
     }
 
     /// Ends the program and starts it again.
-    fn restart(mut self, scene: &Path) -> Self {
+    pub(super) fn restart(mut self, scene: &Path) -> Self {
         self.harness.state_mut().as_mut().unwrap().close();
         let Self { harness, folder } = self;
         drop(harness);
@@ -251,14 +251,16 @@ fn a_snapshot_that_cannot_go_on_says_why() {
     let mut other = bytes;
     *other.last_mut().unwrap() ^= 1;
     std::fs::write(&volume, &other).unwrap();
-    window.harness.input_mut().dropped_files.push(Arc::new(Dropped(path)));
+    window.drop_file(path);
+    window.click(Role::Button, "Open it");
     window.until_it_says("old.exr: it cannot be continued and is rendered anew");
     assert!(window.has("fire.vdb has other content"));
     assert_eq!(window.document().settings.film.size, [8, 6]);
 
     let foreign = window.folder.path().join("foreign.exr");
     ::exr::prelude::write_rgb_file(&foreign, 4, 4, |_, _| (0.5f32, 0.5f32, 0.5f32)).unwrap();
-    window.harness.input_mut().dropped_files.push(Arc::new(Dropped(foreign)));
+    window.drop_file(foreign);
+    window.click(Role::Button, "Open it");
     window.until_it_says("not written by Flambeau");
     assert_eq!(window.document().settings.film.size, [8, 6], "what was open stays open");
 }

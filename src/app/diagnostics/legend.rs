@@ -5,12 +5,12 @@ use egui::{
 };
 
 use super::cells::Cells;
-use super::{CellValue, Scale, overlay, ramp_color};
+use super::{CellValue, Scale, overlay};
 use crate::app::duel::maps::{ColorKey, Difference, MapKind, Noise};
 use crate::app::state::Side;
 use crate::app::theme::{color, space};
 use crate::app::widgets::significant;
-use crate::image::ramp;
+use crate::app::yardstick::Measure;
 use crate::image::tone::false_color;
 use crate::render::Layer;
 
@@ -23,9 +23,12 @@ const OPACITY: f32 = 0.85;
 
 /// One ramp with its numbers.
 pub struct Legend {
-    title: &'static str,
-    colors: Option<ColorKey>,
-    note: String,
+    /// What the numbers are.
+    pub title: &'static str,
+    /// Their colors, where there are any.
+    pub colors: Option<ColorKey>,
+    /// What else is to be said about them.
+    pub note: String,
 }
 
 impl Legend {
@@ -62,6 +65,13 @@ impl Legend {
             MapKind::Noise(Noise::Ratio) => {
                 ("Noise of B over that of A", "Blue: B is less noisy, orange: more")
             }
+            MapKind::Error(measure, side) => (
+                error_title(measure, side),
+                match measure {
+                    Measure::RelMse => "Black: no error. The mean is relMSE",
+                    Measure::Flip => "0: not seen, 1: green in place of blue",
+                },
+            ),
         };
         Self { title, colors: Some(colors), note: note.to_owned() }
     }
@@ -83,6 +93,17 @@ impl Legend {
             _ => format!("The strongest {shown} of {total} {what}s"),
         };
         Self { title, colors: cells.scale().map(ColorKey::Ramp), note }
+    }
+}
+
+fn error_title(measure: Measure, side: Option<Side>) -> &'static str {
+    match (measure, side) {
+        (Measure::RelMse, None) => "Squared error, relative",
+        (Measure::RelMse, Some(Side::A)) => "Squared error of A, relative",
+        (Measure::RelMse, Some(Side::B)) => "Squared error of B, relative",
+        (Measure::Flip, None) => "FLIP error",
+        (Measure::Flip, Some(Side::A)) => "FLIP error of A",
+        (Measure::Flip, Some(Side::B)) => "FLIP error of B",
     }
 }
 
@@ -116,20 +137,15 @@ fn contents(ui: &mut Ui, legend: &Legend) {
     if let Some(colors) = legend.colors {
         let (bar, _) =
             ui.allocate_exact_size(vec2(ui.available_width(), BAR), egui::Sense::empty());
-        let (color, ends) = match colors {
-            ColorKey::Stops => return stops(ui, bar, &legend.note),
-            ColorKey::Ramp(scale) => {
-                (ramp_color as fn(f32) -> Color32, [scale.low, scale.middle(), scale.high])
-            }
-            ColorKey::Diverging { reach, factors: true } => {
-                (diverging as fn(f32) -> Color32, [1.0 / reach, 1.0, reach])
-            }
-            ColorKey::Diverging { reach, factors: false } => {
-                (diverging as fn(f32) -> Color32, [-reach, 0.0, reach])
-            }
+        if colors == ColorKey::Stops {
+            return stops(ui, bar, &legend.note);
+        }
+        let color = |place| {
+            let [r, g, b] = colors.color(place);
+            Color32::from_rgb(r, g, b)
         };
         ui.painter().add(overlay::bar(bar, color));
-        numbers(ui, ends);
+        numbers(ui, colors.ends());
     }
     note(ui, &legend.note);
 }
@@ -149,12 +165,6 @@ fn stops(ui: &mut Ui, bar: Rect, text: &str) {
     let reach = false_color::STOPS as f32;
     numbers(ui, [-reach, 0.0, reach]);
     note(ui, text);
-}
-
-/// A color of a diverging scale at a place in 0..=1.
-fn diverging(place: f32) -> Color32 {
-    let [r, g, b] = ramp::signed_color(2.0 * place - 1.0);
-    Color32::from_rgb(r, g, b)
 }
 
 /// The numbers at the ends of a scale and in its middle.

@@ -5,7 +5,7 @@ use egui::{Color32, Mesh, Painter, Rect, Shape, Stroke, Ui};
 use glam::{UVec2, Vec3A};
 
 use super::cells::{Cell, Cells};
-use super::{Scale, picture_rect, ramp, to_window};
+use super::{Scale, picture_rect, ramp};
 use crate::app::viewport::View;
 use crate::transport::camera::Camera;
 
@@ -90,7 +90,7 @@ impl Canvas<'_> {
 
     /// Where a point in front of the camera, in its view, lies in the window.
     fn window(&self, point: Vec3A) -> egui::Pos2 {
-        to_window(&self.view, self.camera.film_from_view(self.size, point))
+        self.view.window_at(self.camera.film_from_view(self.size, point))
     }
 }
 
@@ -108,7 +108,7 @@ fn in_front(line: [Vec3A; 2], near: f32) -> Option<[Vec3A; 2]> {
 }
 
 /// The colors of a scale as a bar, from left to right; `color` gives that of a place in 0..=1.
-pub fn bar(rect: Rect, color: fn(f32) -> Color32) -> Mesh {
+pub fn bar(rect: Rect, color: impl Fn(f32) -> Color32) -> Mesh {
     let mut mesh = Mesh::default();
     for index in 0..=ramp::STOPS as u32 - 1 {
         let place = index as f32 / (ramp::STOPS - 1) as f32;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use egui::{Color32, Context, CursorIcon, Grid, Label, RichText, Sense, Stroke, Ui, pos2, vec2};
 use glam::{UVec2, Vec2};
 
-use super::{plots, to_window};
+use super::plots;
 use crate::app::background::Background;
 use crate::app::engine::Engine;
 use crate::app::theme::{color, space};
@@ -279,7 +279,7 @@ fn entry(ui: &mut Ui, curve: &Curve, value: f32) {
 
 /// Marks a place of the picture, given in its pixels.
 fn mark(ui: &Ui, view: &View, at: Vec2) {
-    let center = to_window(view, at);
+    let center = view.window_at(at);
     let radius = MARK.max(0.75 * view.placement.scale / view.factor);
     let painter = ui.painter_at(view.rect);
     for (width, color) in [(3.0, color::WELL), (1.2, color::TEXT_STRONG)] {

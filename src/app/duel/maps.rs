@@ -6,8 +6,10 @@ use rayon::prelude::*;
 
 use crate::app::display::Look;
 use crate::app::state::Side;
+use crate::app::yardstick::Measure;
+use crate::image::metrics::{ErrorMap, magma};
 use crate::image::ramp::{self, Scale};
-use crate::image::tone::{Tone, ToneCurve};
+use crate::image::tone::{Tone, ToneCurve, false_color, linear_from_srgb};
 use crate::render::{LayerMap, Picture};
 
 /// How a difference is measured, of gray values.
@@ -37,6 +39,8 @@ pub enum MapKind {
     Difference(Difference),
     /// How noisy they are.
     Noise(Noise),
+    /// How far one is from the reference: of that side, where there are two.
+    Error(Measure, Option<Side>),
 }
 
 /// Numbers a pixel, as a picture to show.
@@ -64,8 +68,36 @@ pub enum ColorKey {
         /// Whether the numbers are factors, 1 in the middle.
         factors: bool,
     },
+    /// Magma, evenly from 0 to 1.
+    Magma,
     /// One color a stop from middle gray.
     Stops,
+}
+
+impl ColorKey {
+    /// The 8-bit sRGB color at a place in 0..=1.
+    pub fn color(self, place: f32) -> [u8; 3] {
+        match self {
+            Self::Ramp(_) => ramp::color(place),
+            Self::Diverging { .. } => ramp::signed_color(2.0 * place - 1.0),
+            Self::Magma => magma(place),
+            Self::Stops => {
+                let index = (place.max(0.0) * false_color::COLORS.len() as f32) as usize;
+                false_color::COLORS[index.min(false_color::COLORS.len() - 1)]
+            }
+        }
+    }
+
+    /// The numbers at the start, in the middle and at the end.
+    pub fn ends(self) -> [f32; 3] {
+        match self {
+            Self::Ramp(scale) => [scale.low, scale.middle(), scale.high],
+            Self::Diverging { reach, factors: true } => [1.0 / reach, 1.0, reach],
+            Self::Diverging { reach, factors: false } => [-reach, 0.0, reach],
+            Self::Magma => [0.0, 0.5, 1.0],
+            Self::Stops => [-1.0, 0.0, 1.0].map(|end| end * false_color::STOPS as f32),
+        }
+    }
 }
 
 /// The share of pixels that lie beyond the ends of a scale.
@@ -88,6 +120,8 @@ impl Map {
             MapKind::Noise(Noise::Ratio) => {
                 std::iter::zip(errors(a), errors(b)).map(|(a, b)| (b / a).ln()).collect()
             }
+            // Two pictures do not tell.
+            MapKind::Error(..) => return None,
         };
         let signed = match kind {
             MapKind::Difference(Difference::Signed) => Some(false),
@@ -98,6 +132,28 @@ impl Map {
             Some(factors) => Self::diverging(kind, a, &values, factors),
             None => Self::ramp(kind, a, values),
         }
+    }
+
+    /// The map of the errors of one picture; `None` where there are none.
+    pub fn of_errors(kind: MapKind, errors: &ErrorMap) -> Option<Self> {
+        let like = Picture { size: errors.size, ..Picture::default() };
+        match kind {
+            MapKind::Error(Measure::Flip, _) => {
+                Some(Self::colored(kind, &like, ColorKey::Magma, {
+                    errors.map.par_iter().map(|&error| linear(magma(error))).collect()
+                }))
+            }
+            // The legend would have no numbers.
+            _ if errors.mean == 0.0 => None,
+            _ => Self::ramp(kind, &like, errors.map.clone()),
+        }
+    }
+
+    /// Colors in linear light.
+    fn colored(kind: MapKind, like: &Picture, key: ColorKey, pixels: Vec<[f32; 4]>) -> Self {
+        let picture = Picture { size: like.size, pixels, complete: true, ..Picture::default() };
+        let look = Look::Picture(Tone { curve: ToneCurve::Linear, ..Tone::default() });
+        Self { kind, picture: Arc::new(picture), look, key }
     }
 
     /// Positive numbers on the ramp.
@@ -123,16 +179,15 @@ impl Map {
         let reach = quantile(&sizes, 1.0 - BEYOND)?;
         let reach = if factors { Scale::rounded_up(reach.exp()) } else { Scale::rounded_up(reach) };
         let span = if factors { reach.ln() } else { reach };
-        let picture = Picture {
-            size: like.size,
-            pixels: values.iter().map(|value| signed(value / span)).collect(),
-            complete: true,
-            ..Picture::default()
-        };
-        let look = Look::Picture(Tone { curve: ToneCurve::Linear, ..Tone::default() });
-        let key = ColorKey::Diverging { reach, factors };
-        Some(Self { kind, picture: Arc::new(picture), look, key })
+        let pixels = values.iter().map(|value| signed(value / span)).collect();
+        Some(Self::colored(kind, like, ColorKey::Diverging { reach, factors }, pixels))
     }
+}
+
+/// The linear color of an 8-bit sRGB code.
+fn linear(code: [u8; 3]) -> [f32; 4] {
+    let [r, g, b] = code.map(|code| linear_from_srgb(f32::from(code) / 255.0));
+    [r, g, b, 1.0]
 }
 
 /// The color of a number in −1..=1; black where it is not known.

@@ -26,6 +26,40 @@ pub fn drop_hint(ui: &mut Ui, name: &str) {
     ui.label(RichText::new(format!("Drop to open {name}")).color(color::ACCENT));
 }
 
+/// What becomes of a dropped picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dropped {
+    /// It is opened.
+    Open,
+    /// It becomes the reference.
+    Reference,
+    /// Nothing.
+    Cancelled,
+}
+
+/// Asks what a dropped picture is for, once that is chosen.
+pub fn dropped(ui: &mut Ui, name: &str) -> Option<Dropped> {
+    ui.horizontal(|ui| {
+        ui.label(RichText::new(name).color(color::TEXT_STRONG));
+        let open = "Open its scene and go on from its samples.";
+        let reference = "Measure the picture against it: how far it is off, and where.";
+        let choices = [
+            ("Open it", open, Dropped::Open),
+            ("Use as reference", reference, Dropped::Reference),
+            ("Cancel", "Do nothing.", Dropped::Cancelled),
+        ];
+        let mut chosen = None;
+        for (text, help, choice) in choices {
+            if ui.button(text).on_hover_text(help).clicked() {
+                chosen = Some(choice);
+            }
+        }
+        let escaped = ui.input(|input| input.key_pressed(Key::Escape));
+        chosen.or(escaped.then_some(Dropped::Cancelled))
+    })
+    .inner
+}
+
 /// A path being typed.
 #[derive(Debug)]
 pub struct PathBar {
@@ -73,7 +107,7 @@ impl PathBar {
 
     fn replaces(&self, text: &str) -> bool {
         let path = PathBuf::from(crate::app::files::typed(text));
-        self.purpose != Purpose::Open && self.purpose.complete(path).exists()
+        !self.purpose.reads() && self.purpose.complete(path).exists()
     }
 
     fn line(&mut self, ui: &mut Ui) -> Typed {
@@ -82,6 +116,8 @@ impl PathBar {
             Purpose::SaveExr => ("Save EXR as", "path of the .exr", "Save"),
             Purpose::SavePng => ("Save PNG as", "path of the .png", "Save"),
             Purpose::SaveScene => ("Save scene as", "path of the .toml", "Save"),
+            Purpose::Reference => ("Reference", "path of an .exr or .npy", "Load"),
+            Purpose::SaveComparison => ("Save comparison as", "path of the .png", "Save"),
         };
         ui.horizontal(|ui| {
             ui.label(RichText::new(label).color(color::TEXT_STRONG));

@@ -5,13 +5,14 @@ use egui::{Context, Grid, RichText, Ui, Window};
 use crate::app::commands::Command;
 use crate::app::theme::color;
 
-const MOUSE: [(&str, &str); 7] = [
+const MOUSE: [(&str, &str); 8] = [
     ("Drag", "Orbit around the target"),
     ("Middle drag, Shift+drag", "Pan"),
     ("Wheel, right drag", "Dolly"),
     ("Ctrl+wheel", "Zoom to pixels"),
     ("Ctrl+drag", "Move the zoomed picture"),
     ("Double-click the picture", "Fit it again"),
+    ("M, then drag", "Figures of a rectangle"),
     ("Double-click a setting", "Back to how it was opened"),
 ];
 

@@ -16,13 +16,16 @@ const VIEW: [&[Command]; 4] = [
     &[Command::NextToneCurve, Command::FalseColor],
     &[Command::FoldPanels],
 ];
-const COMPARE: [&[Command]; 2] = [
-    &[Command::Compare, Command::NextLayout],
+const COMPARE: [&[Command]; 4] = [
+    &[Command::Compare, Command::NextLayout, Command::SaveComparison],
     &[Command::SwitchSide, Command::SwapSides, Command::CopySide],
+    &[Command::Rectangle],
+    &[Command::LoadReference, Command::PictureAsReference, Command::RemoveReference],
 ];
-const SNAPSHOTS: [&[Command]; 3] = [
+const SNAPSHOTS: [&[Command]; 4] = [
     &[Command::KeepSnapshot, Command::FoldStrip],
     &[Command::PreviousSnapshot, Command::NextSnapshot, Command::LivePicture],
+    &[Command::CompareAsA, Command::CompareAsB],
     &[Command::ContinueSnapshot, Command::DeleteSnapshot, Command::UndoDelete],
 ];
 const HELP: [&[Command]; 1] = [&[Command::Palette, Command::Shortcuts]];

@@ -7,8 +7,10 @@ pub mod compare;
 pub mod diagnostics;
 pub mod display;
 pub mod emission;
+pub mod figures;
 pub mod film;
 pub mod help;
+pub mod measures;
 pub mod menu;
 pub mod noise_plot;
 pub mod palette;
@@ -26,6 +28,7 @@ use super::duel::Duel;
 use super::loader::Grids;
 use super::state::Editor;
 use super::theme::color;
+use super::yardstick::Yardstick;
 
 /// What a panel may read and change.
 pub struct Panel<'a> {
@@ -39,6 +42,8 @@ pub struct Panel<'a> {
     pub guided_flights: Option<f32>,
     /// The other side of a comparison.
     pub duel: &'a Duel,
+    /// The reference and the errors against it.
+    pub yardstick: &'a mut Yardstick,
     /// What is shown to understand the render.
     pub wanted: &'a mut Wanted,
     /// Files that were open before, the last one first.

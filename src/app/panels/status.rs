@@ -4,7 +4,7 @@
 use egui::{Align, Button, DragValue, Layout, RichText, Ui};
 use glam::UVec2;
 
-use super::Panel;
+use super::{Panel, compare};
 use crate::app::commands::Command;
 use crate::app::engine::Engine;
 use crate::app::snapshots::{Item, Snapshots};
@@ -13,7 +13,6 @@ use crate::app::viewport::Viewport;
 use crate::app::widgets::{count, finite};
 use crate::image::tone::{Channel, Tone};
 use crate::render::{Layer, RenderStats};
-use crate::transport::strategy::Strategy;
 
 /// Room that the zoom takes.
 const ZOOM_WIDTH: f32 = 70.0;
@@ -39,9 +38,9 @@ pub fn show(
         if ui.add(button).on_hover_text(format!("{help}  [{key}]")).clicked() {
             panel.commands.push(Command::PauseResume);
         }
-        let stored = snapshots.strip.shown_item();
+        let stored = snapshots.strip.shown_item().filter(|_| panel.duel.stored.is_none());
         if stored.is_none() {
-            bias(ui, &panel.editor.document.settings.strategy);
+            bias(ui, panel);
         }
         match engine.picture() {
             _ if let Some(item) = stored => stored_figures(ui, item),
@@ -69,12 +68,12 @@ pub fn show(
     });
 }
 
-/// A picture that will never be quite right says so.
-fn bias(ui: &mut Ui, strategy: &Strategy) {
-    if strategy.is_biased() {
+/// A picture that will never be quite right says so; of two, which one it is.
+fn bias(ui: &mut Ui, panel: &Panel<'_>) {
+    if let Some(text) = compare::bias(&panel.editor.document, panel.duel) {
         let help = "Ray marching is on (Strategy, Advanced): this picture is not quite right, and \
                     more samples will not mend that.";
-        ui.label(RichText::new("biased").color(color::WARNING)).on_hover_text(help);
+        ui.label(RichText::new(text).color(color::WARNING)).on_hover_text(help);
     }
 }
 

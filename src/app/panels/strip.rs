@@ -22,7 +22,7 @@ const LINE: f32 = 15.0;
 /// Width of the field for a name.
 const NAME_WIDTH: f32 = 150.0;
 /// Room that the buttons behind name and note take.
-const BUTTONS_WIDTH: f32 = 250.0;
+const BUTTONS_WIDTH: f32 = 440.0;
 /// Room that the button takes which undoes a deletion.
 const UNDO_WIDTH: f32 = 100.0;
 
@@ -108,6 +108,8 @@ fn details(ui: &mut Ui, item: &mut Item, buttons: f32, commands: &mut Vec<Comman
     let help = "A note to yourself. When snapshots take too much of the disk, those without a note \
                 go first.";
     ui.add(note).accessible_name("Snapshot note").on_hover_text(help);
+    button(ui, Command::CompareAsA, "Compare as A", commands);
+    button(ui, Command::CompareAsB, "as B", commands);
     button(ui, Command::ContinueSnapshot, "Go on from it", commands);
     button(ui, Command::DeleteSnapshot, "Delete", commands);
 }
@@ -123,6 +125,8 @@ fn button(ui: &mut Ui, command: Command, text: &str, commands: &mut Vec<Command>
 fn context_menu(ui: &mut Ui, commands: &mut Vec<Command>) {
     for (command, text) in [
         (Command::ContinueSnapshot, "Go on from it"),
+        (Command::CompareAsA, Command::CompareAsA.text()),
+        (Command::CompareAsB, Command::CompareAsB.text()),
         (Command::SaveExr, Command::SaveExr.text()),
         (Command::SavePng, Command::SavePng.text()),
         (Command::DeleteSnapshot, "Delete"),

@@ -16,7 +16,7 @@ use crate::error::{Error, Result};
 use crate::image::exr;
 use crate::image::tone::Tone;
 use crate::render::estimate::samples_per_pixel;
-use crate::render::publish::resolve;
+use crate::render::publish::{resolve, resolve_variance};
 use crate::render::{Film, Picture};
 use crate::scene::Settings;
 
@@ -40,6 +40,8 @@ pub enum Job {
     Forget(Vec<String>),
     /// Read the picture of this snapshot.
     Read(Entry),
+    /// Read it with the variance of its pixels, which takes as much memory as its film meanwhile.
+    ReadWithVariance(Entry),
 }
 
 /// A picture to keep.
@@ -50,6 +52,8 @@ pub struct Keep {
     pub settings: Settings,
     /// Seconds spent on it.
     pub seconds: f64,
+    /// CPU time spent on it, in seconds.
+    pub cpu_seconds: f64,
     /// How it is shown.
     pub tone: Tone,
     /// What it is called.
@@ -123,7 +127,8 @@ impl Clerk {
 
     /// Asks the disk for something.
     pub fn ask(&self, job: Job) {
-        let desk = if matches!(job, Job::Read(_)) { &self.reader } else { &self.writer };
+        let reads = matches!(job, Job::Read(_) | Job::ReadWithVariance(_));
+        let desk = if reads { &self.reader } else { &self.writer };
         if let Some(jobs) = &desk.jobs {
             // The thread lives as long as its desk.
             let _ = jobs.send(job);
@@ -195,6 +200,10 @@ impl Bench {
                 let picture = read(store, &entry).map_err(|error| error.to_string());
                 return Some(Report::Read(entry.id, picture));
             }
+            Job::ReadWithVariance(entry) => {
+                let picture = read_with_variance(store, &entry).map_err(|error| error.to_string());
+                return Some(Report::Read(entry.id, picture));
+            }
             Job::Describe(id, record) => store.describe(&id, &record),
             Job::Delete(id) => store.delete(&id),
             Job::Restore(id) => {
@@ -210,7 +219,7 @@ impl Bench {
     }
 
     fn keep(&self, store: &Store, keep: Keep) -> Result<Report> {
-        let Keep { film, mut settings, seconds, tone, name } = keep;
+        let Keep { film, mut settings, seconds, cpu_seconds, tone, name } = keep;
         let film = receive(&PathBuf::from(&name), &film)?;
         settings.film.size = film.size().to_array();
         let mut picture = blank(&film.size().to_array());
@@ -219,7 +228,7 @@ impl Bench {
         picture.stats.seconds = seconds;
         let fresh = Fresh {
             film: &film,
-            header: &header(&settings, seconds)?,
+            header: &header(&settings, [seconds, cpu_seconds])?,
             record: Record::new(name, &settings, &picture.stats),
             thumbnail: &Thumbnail::of(&picture),
             tone,
@@ -249,6 +258,18 @@ fn read(store: &Store, entry: &Entry) -> Result<Arc<Picture>> {
     picture.stats.samples_per_pixel = spp;
     picture.stats.seconds = seconds;
     picture.stats.noise = noise;
+    Ok(Arc::new(picture))
+}
+
+fn read_with_variance(store: &Store, entry: &Entry) -> Result<Arc<Picture>> {
+    let exr::Snapshot { film, header } = exr::read_snapshot(&store.picture(&entry.id))?;
+    let mut picture = blank(&film.size().to_array());
+    picture.stats.noise = resolve(&film, &mut picture.pixels);
+    resolve_variance(&film, &mut picture.variance);
+    picture.fewest_samples = film.sample_range().0;
+    picture.stats.samples_per_pixel = samples_per_pixel(&film);
+    picture.stats.seconds = header.wall_seconds;
+    picture.stats.cpu_seconds = header.cpu_seconds_render;
     Ok(Arc::new(picture))
 }
 

@@ -43,6 +43,8 @@ pub struct Strip {
     deleted: Vec<(usize, Item)>,
     /// Whether what is shown has changed since the strip was last drawn.
     moved: bool,
+    /// Whether the picture shown should bring its variance along.
+    pub wants_variance: bool,
     /// Whether the user wants to see it; none: once there is something in it.
     open: Option<bool>,
 }
@@ -158,6 +160,13 @@ impl Strip {
         let near = [Some(shown), shown.checked_sub(1), Some(shown + 1)];
         let items = near.into_iter().flatten().filter_map(|index| self.items.get(index));
         let missing = |item: &&Item| item.picture.is_none() && !item.unreadable;
+        if self.wants_variance
+            && let Some(item) = self.shown_item()
+            && !item.unreadable
+            && item.picture.as_ref().is_none_or(|picture| picture.variance.is_empty())
+        {
+            return Some(Job::ReadWithVariance(item.entry.clone()));
+        }
         items.into_iter().find(missing).map(|item| Job::Read(item.entry.clone()))
     }
 
@@ -173,7 +182,9 @@ impl Strip {
     /// Lets go of the pictures farthest from the one shown while they take too much memory.
     fn let_go(&mut self) {
         let size = |item: &Item| {
-            item.picture.as_ref().map_or(0, |picture| size_of_val(picture.pixels.as_slice()))
+            item.picture.as_ref().map_or(0, |picture| {
+                size_of_val(picture.pixels.as_slice()) + size_of_val(picture.variance.as_slice())
+            })
         };
         let center = self.shown.unwrap_or(self.items.len());
         let mut places: Vec<usize> = (0..self.items.len()).collect();

@@ -1,49 +1,38 @@
-//! What the window shows of a comparison beside the pictures: the bar with its figures, the divider
-//! and the names of the sides.
+//! What the window shows of a comparison over the pictures: the divider and the names of the sides.
 
 use egui::{Align2, CursorIcon, FontId, Rect, Sense, Stroke, TextStyle, Ui, pos2, vec2};
 
 use super::App;
 use crate::app::duel::{FLIP, Layout};
 use crate::app::panels::compare;
-use crate::app::state::{Side, strategy_name};
-use crate::app::theme::{self, color, space};
+use crate::app::state::Side;
+use crate::app::theme::{color, space};
 
 /// Reach of the hand on the divider to either side, in points.
 const GRIP: f32 = 5.0;
 
 impl App {
-    /// Shows how both sides are looked at and what is known of them.
-    pub(super) fn compare_row(&mut self, ui: &mut Ui) {
-        if self.duel.rival().is_none() {
-            return;
-        }
-        egui::Panel::bottom("compare").frame(theme::panel_frame()).show(ui, |ui| {
-            ui.horizontal_wrapped(|ui| {
-                compare::layouts(ui, &mut self.duel.layout);
-                ui.separator();
-                compare::verdict(ui, self.duel.comparison());
-            });
-        });
+    /// The side that is edited, where there are two.
+    pub(super) fn active_side(&self) -> Option<Side> {
+        let versus = self.versus.map(Side::other);
+        versus.or(self.editor.document.compared.map(|compared| compared.active))
     }
 
     /// Draws the divider and the names of the sides over the pictures in `rect`.
     pub(super) fn compare_marks(&mut self, ui: &mut Ui, rect: Rect) {
         let document = &self.editor.document;
-        let Some(compared) = document.compared.filter(|_| self.duel.rival().is_some()) else {
-            return;
-        };
-        let name = |side| compare::side_title(side, strategy_name(&document.strategy_of(side)));
+        let Some(active) = self.active_side().filter(|_| self.duel.is_on()) else { return };
+        let name = |side| compare::side_title(side, document, &self.duel);
         let (a, b) = (name(Side::A), name(Side::B));
-        if ui.input(|input| input.key_down(FLIP)) && self.duel.map().is_none() {
-            let other = if compared.active == Side::A { &b } else { &a };
+        if ui.input(|input| input.key_down(FLIP)) && self.map().is_none() {
+            let other = if active == Side::A { &b } else { &a };
             chip(ui, rect, rect.center_top(), Align2::CENTER_TOP, other);
             return;
         }
         let middle = match self.duel.layout {
             Layout::Wipe => self.divider(ui, rect),
             Layout::Beside => rect.center().x,
-            Layout::Difference(_) | Layout::Noise(_) => return,
+            Layout::Difference(_) | Layout::Noise(_) | Layout::Error(..) => return,
         };
         let gap = vec2(space::ROW, 0.0);
         chip(ui, rect, pos2(middle, rect.top()) - gap, Align2::RIGHT_TOP, &a);

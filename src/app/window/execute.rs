@@ -28,7 +28,6 @@ impl App {
                 self.engine.restart();
                 self.duel.restart();
             }
-            Command::NextLayout => self.duel.layout = self.duel.layout.next(),
             Command::FrameVolume => self.frame_volume(),
             Command::FitPicture => self.viewport.zoom = Default::default(),
             Command::ZoomToPixels => {
@@ -44,7 +43,7 @@ impl App {
                 };
             }
             Command::Shortcuts => self.help = !self.help,
-            _ if self.execute_stored(ctx, command) => {}
+            _ if self.execute_stored(ctx, command) || self.execute_measure(ctx, command) => {}
             _ => self.edit(command),
         }
         ctx.request_repaint();

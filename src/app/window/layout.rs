@@ -2,18 +2,17 @@
 
 use std::path::PathBuf;
 
-use egui::{Frame, Margin, ScrollArea, Ui, UiBuilder};
+use egui::{Context, Frame, Margin, ScrollArea, Ui, UiBuilder};
 use glam::UVec2;
 
 use super::App;
 use crate::app::commands::Command;
-use crate::app::diagnostics::Legend;
+use crate::app::diagnostics::{Legend, show_legends};
 use crate::app::display::Look;
 use crate::app::files::typed;
-use crate::app::panels::bars::{self, Typed};
+use crate::app::panels::bars::{self, Dropped, Typed};
 use crate::app::panels::palette::Choice;
 use crate::app::panels::{self, Panel};
-use crate::app::state::Document;
 use crate::app::theme::{self, color, space};
 use crate::app::viewport::Shown;
 
@@ -31,6 +30,7 @@ impl App {
             notes: &self.notes,
             guided_flights: edited.picture().and_then(|picture| picture.stats.guided_flights),
             duel: &self.duel,
+            yardstick: &mut self.yardstick,
             wanted: &mut self.diagnostics.wanted,
             recent: &self.remembered.recent,
             reopened: &mut reopened,
@@ -73,46 +73,79 @@ impl App {
         self.strip_row(ui);
         self.path_bar_row(ui);
         drop_row(ui);
+        self.dropped_row(ui);
         self.progress_row(ui);
         self.unsaved_row(ui);
-        self.compare_row(ui);
+        self.measure_rows(ui);
         if !self.notices.list().is_empty() {
             egui::Panel::bottom("notices")
                 .frame(theme::panel_frame())
                 .show(ui, |ui| self.notices.show(ui));
         }
         let picture = self.shown_picture().cloned();
-        let shown = self.shown(ui);
-        let is_live = self.snapshots.picture().is_none();
+        let shown = self.shown(ui.ctx());
+        let is_live = self.snapshots.picture().is_none() || self.versus.is_some();
+        let map = self.map().map(|map| Legend::of_map(map.kind, map.key));
+        let map = map.or_else(|| shown.is_false_color().then(Legend::of_stops));
         egui::CentralPanel::no_frame().show(ui, |ui| {
             let rect = ui.available_rect_before_wrap();
-            let view = self.viewport.show(ui, &mut self.editor, &shown);
+            let views = self.viewport.show(ui, &mut self.editor, &shown, &mut self.rectangle);
+            let first = views.first().copied();
             // What is drawn over the picture is about the live one.
-            if !is_live {
-                return;
-            }
-            if let (Some(view), Some(picture)) = (view, &picture) {
-                let map = self.duel.map().map(|map| Legend::of_map(map.kind, map.key));
-                let map = map.or_else(|| shown.is_false_color().then(Legend::of_stops));
+            if let (true, Some(view), Some(picture)) = (is_live, first, &picture) {
                 self.diagnostics.show(ui, view, picture, &self.editor.document.settings, map);
+            } else if let (Some(view), Some(map)) = (first, map) {
+                show_legends(ui, view.rect, &[map]);
             }
-            self.compare_marks(ui, rect);
+            views.iter().for_each(|view| self.rectangle.paint(ui, view));
+            if is_live {
+                self.compare_marks(ui, rect);
+            }
+            let clicked = first.is_some_and(|view| view.clicked.is_some());
+            if clicked && !self.diagnostics.wanted.ray {
+                self.rectangle.remove();
+            }
         });
     }
 
     /// What the picture area shows.
-    fn shown(&self, ui: &Ui) -> Shown {
-        let Document { tone, compared, .. } = &self.editor.document;
-        if let Some(stored) = self.snapshots.picture() {
-            return Shown::One(stored.clone(), Look::Picture(*tone));
+    pub(super) fn shown(&self, ctx: &Context) -> Shown {
+        let tone = self.editor.document.tone;
+        let look = Look::Picture(tone);
+        let map = self.map();
+        if self.versus.is_none()
+            && let Some(stored) = self.snapshots.picture()
+        {
+            return match map {
+                Some(map) => Shown::One(map.picture.clone(), map.look),
+                None => Shown::One(stored.clone(), look),
+            };
         }
         let Some(picture) = self.engine.picture() else { return Shown::Nothing };
-        if let Some(look) = self.diagnostics.look(picture, *tone) {
+        if let Some(look) = self.diagnostics.look(picture, tone) {
             return Shown::One(picture.clone(), look);
         }
-        compared
-            .and_then(|compared| self.duel.shown(ui.ctx(), &self.engine, *tone, compared.active))
-            .unwrap_or_else(|| Shown::One(picture.clone(), Look::Picture(*tone)))
+        let both = self
+            .active_side()
+            .and_then(|active| self.duel.shown(ctx, &self.engine, (tone, active), map));
+        both.unwrap_or_else(|| match map.filter(|_| !self.duel.is_on()) {
+            Some(map) => Shown::One(map.picture.clone(), map.look),
+            None => Shown::One(picture.clone(), look),
+        })
+    }
+
+    /// Asks what a dropped picture is for.
+    fn dropped_row(&mut self, ui: &mut Ui) {
+        let Some(path) = self.dropped.clone() else { return };
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let row = egui::Panel::bottom("dropped").frame(theme::panel_frame());
+        let Some(choice) = row.show(ui, |ui| bars::dropped(ui, &name)).inner else { return };
+        self.dropped = None;
+        match choice {
+            Dropped::Open => self.open_unless_lost(&path.to_string_lossy()),
+            Dropped::Reference => self.load_reference(&ui.ctx().clone(), path),
+            Dropped::Cancelled => {}
+        }
     }
 
     fn palette_window(&mut self, ui: &Ui, commands: &mut Vec<Command>) {

@@ -16,10 +16,23 @@ impl App {
         self.engine.open(source);
     }
 
+    /// Opens a dropped file, or measures against it; of a picture that could be either it asks.
+    pub(super) fn take_dropped(&mut self, ctx: &Context, path: &Path) {
+        let extension = path.extension().map(|extension| extension.to_ascii_lowercase());
+        self.dropped = None;
+        match extension.as_deref().and_then(std::ffi::OsStr::to_str) {
+            Some("npy") => self.load_reference(ctx, path.to_owned()),
+            Some("exr") => self.dropped = Some(path.to_owned()),
+            _ => self.open_unless_lost(&path.to_string_lossy()),
+        }
+    }
+
     /// Does with a chosen path what it was asked for.
     pub(super) fn take_path(&mut self, ctx: &Context, purpose: Purpose, path: PathBuf) {
         if purpose == Purpose::Open {
             self.open_unless_lost(&path.to_string_lossy());
+        } else if purpose == Purpose::Reference {
+            self.load_reference(ctx, path);
         } else if self.engine.is_building() {
             // The film is about to become that of another scene.
             self.waiting.push((purpose, path));
@@ -38,7 +51,7 @@ impl App {
     }
 
     fn save(&mut self, ctx: &Context, purpose: Purpose, path: PathBuf) {
-        let Some(content) = self.content(purpose) else {
+        let Some(content) = self.content(ctx, purpose) else {
             self.notices.failed("There is no picture to save yet.");
             return;
         };
@@ -53,7 +66,7 @@ impl App {
     }
 
     /// What saving writes at this moment; `None` where there is nothing yet.
-    fn content(&self, purpose: Purpose) -> Option<Content> {
+    fn content(&self, ctx: &Context, purpose: Purpose) -> Option<Content> {
         if self.subject.is_some() && matches!(purpose, Purpose::SaveExr | Purpose::SavePng) {
             return self.stored_content(purpose);
         }
@@ -61,11 +74,14 @@ impl App {
         let engine = self.duel.edited(&self.engine);
         let settings = engine.rendered()?;
         match purpose {
-            Purpose::Open => None,
+            Purpose::Open | Purpose::Reference => None,
+            Purpose::SaveComparison => Some(Content::View(Box::new(self.saved_view(ctx)))),
             Purpose::SaveExr => Some(Content::Exr {
                 film: engine.session().snapshot(),
                 settings: settings.clone(),
-                seconds: engine.picture().map_or(0.0, |picture| picture.stats.seconds),
+                seconds: engine
+                    .picture()
+                    .map_or([0.0; 2], |picture| [picture.stats.seconds, picture.stats.cpu_seconds]),
             }),
             Purpose::SavePng => {
                 Some(Content::Png { film: engine.session().snapshot(), tone: document.tone })
@@ -81,7 +97,9 @@ impl App {
 
     /// Asks for a path in the way that the options say.
     pub(super) fn ask(&mut self, ctx: &Context, purpose: Purpose) {
-        self.subject = self.snapshots.strip.shown_item().map(|item| item.entry.id.clone());
+        // Beside the live picture it is that which is worked on.
+        let shown = self.snapshots.strip.shown_item().filter(|_| self.versus.is_none());
+        self.subject = shown.map(|item| item.entry.id.clone());
         if self.dialogs == Dialogs::Typed {
             self.ask_typed(purpose);
         } else if self.dialog.is_none() {
@@ -96,7 +114,7 @@ impl App {
     /// Shows the bar to type a path in.
     pub(super) fn ask_typed(&mut self, purpose: Purpose) {
         let text = match purpose {
-            Purpose::Open => String::new(),
+            _ if purpose.reads() => String::new(),
             _ => self.suggested(purpose).to_string_lossy().into_owned(),
         };
         self.path_bar = Some(PathBar::new(purpose, text));

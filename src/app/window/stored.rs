@@ -7,10 +7,12 @@ use egui::{Context, Ui};
 
 use super::App;
 use crate::app::commands::Command;
+use crate::app::duel::Stored;
 use crate::app::files::Purpose;
 use crate::app::panels;
 use crate::app::saver::Content;
 use crate::app::snapshots::{Item, Keep, strategy};
+use crate::app::state::Side;
 use crate::app::theme;
 use crate::render::Picture;
 
@@ -43,6 +45,7 @@ impl App {
         let keep = Keep {
             settings: settings.clone(),
             seconds: picture.stats.seconds,
+            cpu_seconds: picture.stats.cpu_seconds,
             tone: self.editor.document.tone,
             name: self.snapshots.strip.free_name(&name),
             film: engine.session().snapshot(),
@@ -72,10 +75,25 @@ impl App {
         match command {
             Command::KeepSnapshot => self.snapshots.wants_keep = true,
             Command::PreviousSnapshot => self.snapshots.strip.show_previous(),
+            Command::NextSnapshot if self.versus.is_some() && self.is_last_shown() => {}
             Command::NextSnapshot => self.snapshots.strip.show_next(),
             // The key also closes what is open in front.
-            Command::LivePicture if self.path_bar.is_some() || ctx.any_popup_open() => {}
-            Command::LivePicture => self.snapshots.strip.show(None),
+            Command::LivePicture if ctx.any_popup_open() => {}
+            Command::LivePicture if self.rectangle.is_armed() => {
+                self.rectangle.remove();
+            }
+            Command::LivePicture if self.snapshots.strip.shown().is_some() => {
+                self.snapshots.strip.show(None);
+            }
+            Command::LivePicture => {
+                self.rectangle.remove();
+            }
+            Command::CompareAsA => self.set_against_live(Side::A),
+            Command::CompareAsB => self.set_against_live(Side::B),
+            Command::Compare if self.versus.is_some() => self.snapshots.strip.show(None),
+            Command::SwapSides if self.versus.is_some() => {
+                self.versus = self.versus.map(Side::other);
+            }
             Command::ContinueSnapshot => self.go_on_from_shown(),
             Command::DeleteSnapshot => self.snapshots.delete(),
             Command::UndoDelete => self.snapshots.undo_delete(),
@@ -85,10 +103,52 @@ impl App {
         true
     }
 
+    fn is_last_shown(&self) -> bool {
+        self.snapshots
+            .strip
+            .shown()
+            .is_some_and(|index| index + 1 == self.snapshots.strip.items().len())
+    }
+
+    /// Compares the snapshot shown, as that side, with the live picture. What two strategies were
+    /// compared before goes on with the one that was edited.
+    fn set_against_live(&mut self, side: Side) {
+        if self.snapshots.strip.shown().is_none() {
+            self.notices.failed(
+                "There is no snapshot to compare with: K keeps one, the left arrow flips to it.",
+            );
+            return;
+        }
+        self.versus = Some(side);
+        let document = &mut self.editor.document;
+        if document.compared.take().is_some() {
+            self.editor.name_edit("comparison");
+        }
+    }
+
+    /// Brings the duel in line with the snapshot that is compared, if one is.
+    pub(super) fn update_versus(&mut self) {
+        let shown = self.snapshots.strip.shown_item();
+        self.versus = self.versus.filter(|_| shown.is_some());
+        if self.editor.document.compared.is_some() {
+            // An edit or an undo began a comparison of strategies.
+            self.versus = None;
+        }
+        self.duel.stored = self.versus.zip(shown).map(|(side, item)| Stored {
+            side,
+            name: item.record.name.clone(),
+            picture: item.picture().filter(|picture| !picture.variance.is_empty()).cloned(),
+            is_biased: item.record.strategy.ends_with("biased"),
+        });
+        // Noise is told of both sides, and of a rectangle.
+        let measures = self.versus.is_some() || self.rectangle.is_set();
+        self.snapshots.strip.wants_variance = measures;
+    }
+
     fn go_on_from_shown(&mut self) {
         let shown = self.snapshots.strip.shown_item();
         if let Some(file) = shown.and_then(|item| self.snapshots.file(item)) {
-            self.open(&file.to_string_lossy());
+            self.open_unless_lost(&file.to_string_lossy());
         }
     }
 

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::error::Result;
 use crate::image::Reference;
-use crate::image::metrics::{Flip, Viewing, rel_mse};
+use crate::image::metrics::{self, Viewing};
 use crate::render::publish::resolve;
 use crate::render::side_by_side::RenderedPair;
 
@@ -30,13 +30,17 @@ pub fn load(path: &Path, size: UVec2) -> Result<Reference> {
 /// The errors of A and of B.
 pub fn of(reference: &Reference, pair: &RenderedPair) -> Result<[Errors; 2]> {
     pair.pool.install(|| {
-        let flip = Flip::new(reference, Viewing::default())?;
-        let errors = |side: usize| {
+        let pictures = [0, 1].map(|side| {
             let mut pixels = Vec::new();
             resolve(&pair.sides[side].film, &mut pixels);
-            let rel_mse = rel_mse(&pixels, reference)?.mean;
-            Ok(Errors { rel_mse, flip: flip.compare(&pixels)?.mean })
+            pixels
+        });
+        let pictures = pictures.each_ref().map(Vec::as_slice);
+        let errors = metrics::Errors::of(&pictures, reference, Viewing::default())?;
+        let means = |side: usize| {
+            let metrics::Errors { rel_mse, flip } = &errors[side];
+            Errors { rel_mse: rel_mse.mean, flip: flip.mean }
         };
-        Ok([errors(0)?, errors(1)?])
+        Ok([means(0), means(1)])
     })
 }

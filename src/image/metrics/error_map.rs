@@ -22,6 +22,21 @@ impl ErrorMap {
         Self { size, mean: sum / map.len().max(1) as f64, map }
     }
 
+    /// The mean over a rectangle of `size` pixels from `first` on, as far as it lies on the map; 0
+    /// where none of it does.
+    pub fn mean_of(&self, first: UVec2, size: UVec2) -> f64 {
+        let first = first.min(self.size);
+        let end = first.saturating_add(size).min(self.size);
+        let width = self.size.x as usize;
+        let lines = (first.y..end.y).map(|y| {
+            let start = y as usize * width;
+            &self.map[start + first.x as usize..start + end.x as usize]
+        });
+        let sum: f64 = lines.flatten().copied().map(f64::from).sum();
+        let pixels = f64::from(end.x - first.x) * f64::from(end.y - first.y);
+        if pixels > 0.0 { sum / pixels } else { 0.0 }
+    }
+
     /// The errors up to which the pixels add up to a quarter, half and three quarters of all error.
     ///
     /// Plain quartiles of a good picture lie in its flawless parts; these tell how bad the bad parts
@@ -48,6 +63,16 @@ impl ErrorMap {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn means_of_rectangles_end_at_the_map() {
+        let map = ErrorMap::new(UVec2::new(3, 2), vec![1.0, 2.0, 3.0, 4.0, 5.0, 9.0]);
+        let mean = |x, y, w, h| map.mean_of(UVec2::new(x, y), UVec2::new(w, h));
+        assert_eq!(mean(0, 0, 3, 2), map.mean);
+        assert_eq!(mean(1, 0, 1, 2), 3.5);
+        assert_eq!(mean(2, 1, 7, u32::MAX), 9.0);
+        assert_eq!(mean(3, 0, 5, 5), 0.0);
+    }
 
     #[test]
     fn quartiles_weigh_pixels_by_their_error() {

@@ -5,14 +5,16 @@
 //! - [`flip()`] is what somebody notices who flips between the two pictures as the screen shows
 //!   them; [`Flip`] holds on to the reference for many pictures.
 //!
-//! Both give an [`ErrorMap`]; [`magma`] colors it.
+//! Both give an [`ErrorMap`], and [`Errors`] holds the two; [`magma`] colors that of FLIP.
 
 mod error_map;
+mod errors;
 mod flip;
 mod magma;
 mod rel_mse;
 
 pub use error_map::ErrorMap;
+pub use errors::Errors;
 pub use flip::{Flip, PIXELS_PER_DEGREE, Viewing, flip};
 pub use magma::magma;
 pub use rel_mse::{REL_MSE_FLOOR, rel_mse};

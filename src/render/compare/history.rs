@@ -35,6 +35,16 @@ impl NoiseHistory {
         self.points.push([cpu_seconds, noise]);
     }
 
+    /// The same of a render that may have begun anew, and then begins the history anew.
+    pub fn follow(&mut self, cpu_seconds: f64, noise: f64) {
+        match self.points.last() {
+            Some(last) if cpu_seconds < last[0] => self.points.clear(),
+            Some(last) if cpu_seconds == last[0] => return,
+            _ => {}
+        }
+        self.push(cpu_seconds, noise);
+    }
+
     /// The points, earliest first: seconds of CPU time and noise, as
     /// [`FilmStats::noise`](crate::render::FilmStats::noise).
     pub fn points(&self) -> &[[f64; 2]] {
@@ -64,6 +74,17 @@ mod tests {
         assert_eq!(decade(1.0).count() as f64, PER_DECADE);
         assert_eq!(decade(10.0).count() as f64, PER_DECADE);
         assert!(points.is_sorted_by(|a, b| a[0] < b[0]));
+    }
+
+    #[test]
+    fn a_render_that_begins_anew_has_a_history_of_its_own() {
+        let mut history = NoiseHistory::default();
+        for (seconds, noise) in [(1.0, 0.5), (2.0, 0.4), (2.0, 0.3)] {
+            history.follow(seconds, noise);
+        }
+        assert_eq!(history.points(), [[1.0, 0.5], [2.0, 0.4]]);
+        history.follow(0.5, 0.9);
+        assert_eq!(history.points(), [[0.5, 0.9]]);
     }
 
     #[test]

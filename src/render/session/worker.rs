@@ -261,10 +261,12 @@ impl Worker {
             old_film = Some(film);
         }
         let resumed_at = request.resume.as_ref().map(|resume| resume.seconds);
+        let cpu_seconds = request.resume.as_ref().map_or(0.0, |resume| resume.cpu_seconds);
         match film_for(request.resume, request.size, old_film) {
             Ok(film) => {
                 let limits = Limits { spp: request.spp, seconds: None };
-                let engine = Engine::new(request.sampler, film, limits, self.seconds_per_path);
+                let mut engine = Engine::new(request.sampler, film, limits, self.seconds_per_path);
+                engine.count_in(cpu_seconds);
                 let (generation, provisional) = (request.generation, request.provisional);
                 self.job = Some(Active::new(engine, generation, provisional, resumed_at));
             }

@@ -4,6 +4,7 @@ use std::sync::LazyLock;
 
 use glam::Mat3A;
 
+use crate::image::tone::linear_from_srgb;
 use crate::math::Rgb;
 
 /// XYZ of linear Rec.709, by columns; from the primaries of IEC 61966-2-1 and the white that the
@@ -27,14 +28,8 @@ static LINEAR_FROM_XYZ: LazyLock<Mat3A> = LazyLock::new(|| XYZ_FROM_LINEAR.inver
 const WHITE: Rgb = Rgb::new(0.950_428_55, 1.0, 1.088_900_4);
 
 /// The display-linear value of every 8-bit sRGB code.
-static LINEAR: LazyLock<[f32; 256]> = LazyLock::new(|| {
-    std::array::from_fn(|code| {
-        let code = code as f64 / 255.0;
-        let linear =
-            if code <= 0.04045 { code / 12.92 } else { ((code + 0.055) / 1.055).powf(2.4) };
-        linear as f32
-    })
-});
+static LINEAR: LazyLock<[f32; 256]> =
+    LazyLock::new(|| std::array::from_fn(|code| linear_from_srgb(code as f32 / 255.0)));
 
 /// The color YCxCz of an 8-bit sRGB code: lightness, red against green, yellow against blue, all
 /// linear in light, so that they can be blurred (Kolpatzik and Bouman, 1992; the paper's section on

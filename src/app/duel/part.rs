@@ -1,0 +1,52 @@
+//! What is known of a rectangle of one picture, or of two.
+
+use std::sync::Arc;
+
+use crate::render::Picture;
+use crate::render::compare::{Area, Comparison, Side};
+
+/// One picture or those of A and B, and the rectangle.
+#[derive(Clone)]
+pub struct PartTask {
+    /// The pictures.
+    pub pictures: Vec<Arc<Picture>>,
+    /// The rectangle.
+    pub area: Area,
+}
+
+impl PartTask {
+    /// Whether the same will be known of both.
+    pub fn same(&self, other: &Self) -> bool {
+        let pairs = std::iter::zip(&self.pictures, &other.pictures);
+        self.area == other.area
+            && self.pictures.len() == other.pictures.len()
+            && pairs.into_iter().all(|(a, b)| Arc::ptr_eq(a, b))
+    }
+}
+
+/// What is known of it.
+pub struct Part {
+    /// The rectangle.
+    pub area: Area,
+    /// The figures of the one picture, or of A and B.
+    pub sides: Vec<Side>,
+    /// How those two compare.
+    pub comparison: Option<Comparison>,
+}
+
+impl Part {
+    /// Looks at the rectangle.
+    pub fn of(task: &PartTask) -> Self {
+        let area = task.area;
+        match &task.pictures[..] {
+            [a, b] if a.size == b.size => {
+                let comparison = Comparison::of_pictures([a, b], Some(area));
+                Self { area, sides: comparison.sides.to_vec(), comparison: Some(comparison) }
+            }
+            pictures => {
+                let side = |picture: &Arc<Picture>| Side::of_picture(picture, Some(area));
+                Self { area, sides: pictures.iter().map(side).collect(), comparison: None }
+            }
+        }
+    }
+}

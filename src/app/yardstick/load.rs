@@ -1,0 +1,128 @@
+//! References on their way: read from files or taken from pictures, off the window's thread.
+
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, mpsc};
+
+use crate::error::{Error, Result};
+use crate::image::Reference;
+use crate::image::exr::read_info;
+use crate::render::Picture;
+use crate::scene::settings::CameraSettings;
+use crate::scene::{self, Settings};
+
+/// A reference and what is known about it.
+#[derive(Debug)]
+pub struct Held {
+    /// What the user calls it.
+    pub name: String,
+    /// The picture.
+    pub reference: Reference,
+    /// The file it came from.
+    pub path: Option<PathBuf>,
+    shows: Shows,
+}
+
+/// What a reference is known to show.
+#[derive(Debug)]
+enum Shows {
+    /// Something.
+    Unknown,
+    /// What this camera sees.
+    Camera(CameraSettings),
+    /// This scene.
+    Scene(Box<Settings>),
+}
+
+/// Where a reference comes from.
+pub enum Origin {
+    /// A file; the name is what the user calls it.
+    File(String, PathBuf),
+    /// A picture of these settings.
+    Picture(String, Arc<Picture>, Box<Settings>),
+}
+
+impl Origin {
+    /// A file under its own name.
+    pub fn file(path: PathBuf) -> Self {
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        Self::File(name, path)
+    }
+}
+
+impl Held {
+    /// Takes it from there.
+    ///
+    /// # Errors
+    /// As [`Reference::load`] and [`Reference::new`].
+    pub fn new(origin: Origin) -> Result<Self> {
+        match origin {
+            Origin::File(name, path) => {
+                let reference = Reference::load(&path)?;
+                let shows = camera(&path).map_or(Shows::Unknown, Shows::Camera);
+                Ok(Self { name, reference, path: Some(path), shows })
+            }
+            Origin::Picture(name, picture, settings) => {
+                let reference = Reference::new(&name, picture.size, picture.pixels.clone())?;
+                Ok(Self { name, reference, path: None, shows: Shows::Scene(settings) })
+            }
+        }
+    }
+
+    /// Why errors against it mean little for a render of `settings`, if it is known to show
+    /// something else.
+    pub fn doubt(&self, settings: &Settings) -> Option<&'static str> {
+        match &self.shows {
+            Shows::Unknown => None,
+            Shows::Camera(camera) if *camera != settings.camera => Some("it has another camera"),
+            Shows::Camera(_) => None,
+            Shows::Scene(then) if then.camera != settings.camera => Some("it has another camera"),
+            Shows::Scene(then) => {
+                let same = then.path == settings.path
+                    && then.environment == settings.environment
+                    && then.volume == settings.volume
+                    && then.light == settings.light
+                    && then.surface == settings.surface;
+                (!same).then_some("the scene has changed since")
+            }
+        }
+    }
+}
+
+/// The camera of an EXR that Flambeau wrote.
+fn camera(path: &Path) -> Option<CameraSettings> {
+    let header = read_info(path).ok()?.header?;
+    scene::settings_of(&header, "").ok().map(|settings| settings.camera)
+}
+
+/// A reference under way.
+pub struct Loading(mpsc::Receiver<Result<Held>>);
+
+impl Loading {
+    /// Starts to take it from `origin`; `wake` is called once it is there.
+    ///
+    /// # Errors
+    /// When the system refuses to start a thread.
+    pub fn start(origin: Origin, wake: impl FnOnce() + Send + 'static) -> Result<Self> {
+        let (sender, receiver) = mpsc::channel();
+        let work = move || {
+            // Nobody listens any more where another one was asked for.
+            let _ = sender.send(Held::new(origin));
+            wake();
+        };
+        let thread = std::thread::Builder::new().name("reference".to_owned()).spawn(work);
+        thread.map_err(|error| Error::io("the thread for references", error))?;
+        Ok(Self(receiver))
+    }
+
+    /// What came of it, once.
+    pub fn poll(&self) -> Option<Result<Held>> {
+        match self.0.try_recv() {
+            Ok(result) => Some(result),
+            Err(mpsc::TryRecvError::Empty) => None,
+            Err(mpsc::TryRecvError::Disconnected) => {
+                let reason = "it could not be taken in; try again, or another one";
+                Some(Err(Error::invalid("the reference", "", reason)))
+            }
+        }
+    }
+}

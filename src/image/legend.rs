@@ -1,0 +1,44 @@
+//! What the colors of a map mean, drawn below it.
+
+use super::drawing::{Align, Canvas, color};
+use crate::error::Result;
+use glam::UVec2;
+
+/// Height of a legend in pixels.
+pub const HEIGHT: u32 = 112;
+/// Space around what is in it.
+const MARGIN: i32 = 16;
+/// Height of the bar of colors.
+const BAR: i32 = 14;
+
+/// A bar of colors with its numbers.
+pub struct Legend<'a> {
+    /// What the numbers are.
+    pub title: &'a str,
+    /// What else is to be said about them.
+    pub note: &'a str,
+    /// The 8-bit sRGB color at a place in 0..=1 of the bar.
+    pub color: &'a dyn Fn(f32) -> [u8; 3],
+    /// The numbers at its start, in its middle and at its end.
+    pub ends: [String; 3],
+}
+
+impl Legend<'_> {
+    /// Draws it over the width of the canvas, from `top` on down.
+    pub(super) fn draw(&self, canvas: &mut Canvas, top: i32) -> Result<()> {
+        let (left, right) = (MARGIN, canvas.size().x as i32 - MARGIN);
+        canvas.text((left, top + 18), Align::Left, color::TEXT, self.title)?;
+        let bar = top + 36;
+        for x in left..right {
+            let place = (x - left) as f32 / (right - left - 1).max(1) as f32;
+            let color = (self.color)(place);
+            (bar..bar + BAR).for_each(|y| canvas.put(UVec2::new(x as u32, y as u32), color));
+        }
+        let places =
+            [(left, Align::Left), ((left + right) / 2, Align::Center), (right, Align::Right)];
+        for ((x, align), text) in std::iter::zip(places, &self.ends) {
+            canvas.text((x, bar + BAR + 12), align, color::TEXT, text)?;
+        }
+        canvas.text((left, bar + BAR + 36), Align::Left, color::DIM, self.note)
+    }
+}
