@@ -3,6 +3,8 @@
 
 use egui::{Context, Key, KeyboardShortcut, Modifiers};
 
+use crate::transport::toggle::Toggle;
+
 /// Something that the user can ask for without a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[allow(missing_docs, reason = "`text` and `tooltip` say what each is")]
@@ -36,6 +38,8 @@ pub enum Command {
     SwapSides,
     CopySide,
     NextLayout,
+    /// Try every strategy on the shot.
+    Sweep,
     KeepSnapshot,
     PreviousSnapshot,
     NextSnapshot,
@@ -50,7 +54,7 @@ use Command as C;
 
 impl Command {
     /// All of them, in the order of the help page.
-    pub const ALL: [Self; 36] = [
+    pub const ALL: [Self; 37] = [
         C::Open,
         C::OpenPath,
         C::SaveExr,
@@ -79,6 +83,7 @@ impl Command {
         C::SwapSides,
         C::CopySide,
         C::NextLayout,
+        C::Sweep,
         C::KeepSnapshot,
         C::PreviousSnapshot,
         C::NextSnapshot,
@@ -102,11 +107,11 @@ impl Command {
             C::Redo => "Redo",
             C::PauseResume => "Pause or resume",
             C::Restart => "Restart",
-            C::EmissionDecoupling => "Emission decoupling",
-            C::EmissionRatioTracking => "Emission ratio tracking",
-            C::MajorantBoost => "Majorant boost",
-            C::FireAsLight => "Fire as a light",
-            C::Probes => "Light probes",
+            C::EmissionDecoupling => Toggle::EmissionDecoupling.name(),
+            C::EmissionRatioTracking => Toggle::EmissionRatioTracking.name(),
+            C::MajorantBoost => Toggle::MajorantBoost.name(),
+            C::FireAsLight => Toggle::FireAsLight.name(),
+            C::Probes => Toggle::Probes.name(),
             C::FrameVolume => "Frame the volume",
             C::FitPicture => "Fit the picture",
             C::ZoomToPixels => "Zoom to pixels",
@@ -120,6 +125,7 @@ impl Command {
             C::SwapSides => "Swap A and B",
             C::CopySide => "Copy to the other side",
             C::NextLayout => "Next view of A and B",
+            C::Sweep => "Try all strategies",
             C::KeepSnapshot => "Keep snapshot",
             C::PreviousSnapshot => "Previous snapshot",
             C::NextSnapshot => "Next snapshot",
@@ -170,6 +176,10 @@ impl Command {
             C::SwapSides => "Exchange A and B.",
             C::CopySide => "Give the other side the strategy of the side that is edited.",
             C::NextLayout => "Wipe, side by side, difference, noise.",
+            C::Sweep => {
+                "Try every strategy on this shot for a few seconds each and rank them: which to \
+                 leave on, what each toggle brings. The picture waits meanwhile."
+            }
             C::KeepSnapshot => {
                 "Keep the picture as it is in the strip, with all that is needed to go on from it."
             }
@@ -216,6 +226,7 @@ impl Command {
             C::SwapSides => (Modifiers::NONE, Key::X),
             C::CopySide => (Modifiers::SHIFT, Key::X),
             C::NextLayout => (Modifiers::NONE, Key::V),
+            C::Sweep => (Modifiers::SHIFT, Key::C),
             C::KeepSnapshot => (Modifiers::NONE, Key::K),
             C::PreviousSnapshot => (Modifiers::NONE, Key::ArrowLeft),
             C::NextSnapshot => (Modifiers::NONE, Key::ArrowRight),

@@ -5,6 +5,7 @@
 //! - `engine`, `loader`, `prober`: from edits to pictures, without ever blocking the window.
 //! - `viewport`, `navigation`, `zoom`, `display`: the picture and the hand on it.
 //! - `duel`: two strategies on one scene, side by side.
+//! - `sweep`: every strategy tried on the shot, and ranked.
 //! - `diagnostics`: cells over the picture and maps in its place, to understand a render.
 //! - `panels`, `widgets`, `notices`, `theme`: what is around it.
 //! - `files`, `saver`, `reopen`: choosing, writing and going on from files.
@@ -16,7 +17,6 @@ mod commands;
 mod diagnostics;
 mod display;
 mod duel;
-mod effect;
 mod engine;
 mod files;
 mod frame_stats;
@@ -30,6 +30,7 @@ mod reopen;
 mod saver;
 mod snapshots;
 mod state;
+mod sweep;
 mod theme;
 mod up_axis;
 mod viewport;
@@ -44,6 +45,7 @@ pub use engine::Engine;
 pub use files::Dialogs;
 pub use notices::{Level, Notice, Notices};
 pub use state::{Compared, Document, Editor, Side};
+pub use sweep::{Results, Sweep};
 pub use window::{App, Options};
 
 use crate::error::{Error, Result};

@@ -5,6 +5,7 @@ mod execute;
 mod layout;
 mod paths;
 mod stored;
+mod sweep;
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -24,6 +25,7 @@ use super::panels::bars::PathBar;
 use super::saver::Saver;
 use super::snapshots::Snapshots;
 use super::state::{Compared, Editor};
+use super::sweep::Sweep;
 use super::theme;
 use super::viewport::Viewport;
 use crate::error::Result;
@@ -50,6 +52,7 @@ pub struct App {
     editor: Editor,
     engine: Engine,
     duel: Duel,
+    sweep: Sweep,
     viewport: Viewport,
     diagnostics: Diagnostics,
     notices: Notices,
@@ -90,6 +93,7 @@ impl App {
             editor: Editor::default(),
             engine,
             duel: Duel::new(options.threads),
+            sweep: Sweep::new(options.threads),
             viewport: Viewport::default(),
             diagnostics: Diagnostics::default(),
             notices: Notices::default(),
@@ -123,6 +127,11 @@ impl App {
     /// The other side of a comparison.
     pub fn duel(&self) -> &Duel {
         &self.duel
+    }
+
+    /// Every strategy tried on the shot.
+    pub fn sweep(&self) -> &Sweep {
+        &self.sweep
     }
 
     /// The messages shown.
@@ -172,6 +181,7 @@ impl App {
                     self.notes = notes;
                     self.editor.open(*settings, reopened.is_some());
                     self.viewport.zoom = Default::default();
+                    self.sweep.forget();
                     self.notices = Notices::default();
                     self.source = self.name_of(source);
                     if let Some(Notice { level, text }) = reopened {
@@ -247,6 +257,7 @@ impl App {
             ctx.request_repaint_after(wait.max(Duration::from_millis(1)));
         }
         self.take_in(ctx, news);
+        self.update_sweep(ctx);
     }
 
     /// The size of the film: its own or the window's; `None` before the first frame.

@@ -5,6 +5,7 @@
 
 mod compare;
 mod snapshots;
+mod sweep;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

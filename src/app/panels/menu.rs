@@ -17,9 +17,10 @@ const VIEW: [&[Command]; 3] = [
     &[Command::ExposureUp, Command::ExposureDown, Command::NextToneCurve],
     &[Command::FoldPanels],
 ];
-const COMPARE: [&[Command]; 2] = [
+const COMPARE: [&[Command]; 3] = [
     &[Command::Compare, Command::NextLayout],
     &[Command::SwitchSide, Command::SwapSides, Command::CopySide],
+    &[Command::Sweep],
 ];
 const SNAPSHOTS: [&[Command]; 3] = [
     &[Command::KeepSnapshot, Command::FoldStrip],

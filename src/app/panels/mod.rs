@@ -13,6 +13,7 @@ pub mod noise_plot;
 pub mod status;
 pub mod strategy;
 pub mod strip;
+pub mod sweep;
 pub mod volume;
 
 use egui::{CollapsingHeader, RichText, Ui};

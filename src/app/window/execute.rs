@@ -35,6 +35,7 @@ impl App {
                 self.viewport.toggle_pixel_zoom(size);
             }
             Command::FoldPanels => self.folded = !self.folded,
+            Command::Sweep => self.sweep.ask(&self.editor.document.settings),
             Command::Shortcuts => self.help = !self.help,
             _ if self.execute_stored(ctx, command) => {}
             _ => self.edit(command),
@@ -82,7 +83,7 @@ impl App {
             }
             other => {
                 let Some(toggle) = strategy::toggle_of(other) else { return };
-                let switch = strategy::switch(&mut document.settings.strategy, toggle);
+                let switch = toggle.switch(&mut document.settings.strategy);
                 *switch = !*switch;
                 other.text()
             }

@@ -46,6 +46,7 @@ impl App {
         }
         egui::CentralPanel::no_frame().show(ui, |ui| self.picture_area(ui));
         panels::help::show(ui.ctx(), &mut self.help);
+        self.sweep_window(ui.ctx(), commands);
     }
 
     /// What fixed panels lie on. A window that is cleared to their color spares the painting,
@@ -66,6 +67,7 @@ impl App {
         self.path_bar_row(ui);
         drop_row(ui);
         self.progress_row(ui);
+        self.sweep_row(ui);
         self.compare_row(ui);
         if !self.notices.list().is_empty() {
             egui::Panel::bottom("notices")
@@ -128,7 +130,8 @@ impl App {
         };
         let frame = theme::panel_frame();
         let row = egui::Panel::bottom("progress").frame(frame);
-        if row.show(ui, |ui| bars::progress(ui, &what, fraction)).inner {
+        let help = "Stop loading and keep what is shown.";
+        if row.show(ui, |ui| bars::progress(ui, &what, fraction, help)).inner {
             self.engine.cancel();
         }
     }
