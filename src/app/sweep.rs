@@ -242,7 +242,7 @@ impl Work {
             trials: &self.trials,
             size: self.size,
             seed: self.seed,
-            amount: Amount { spp: 0, cpu_seconds: Some(self.seconds) },
+            amount: Amount { spp: 0, cpu_seconds: Some(self.seconds), evenly: true },
         };
         let swept = sweep(&job, &pool, &self.stop, progress)?;
         if let Some((number, failure)) = &swept.failure {

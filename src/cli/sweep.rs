@@ -93,7 +93,7 @@ fn show_progress(
         (None, None) => Some(DEFAULT_SECONDS),
         (time, _) => time,
     };
-    let amount = Amount { spp: arguments.spp.unwrap_or(0), cpu_seconds };
+    let amount = Amount { spp: arguments.spp.unwrap_or(0), cpu_seconds, evenly: true };
     let size = UVec2::from(settings.film.size);
     let job = SweepJob { scene, trials, size, seed: settings.film.seed, amount };
     let bar: ProgressBar = progress_bar(STEPS);

@@ -16,6 +16,9 @@ use super::turns::{self, Account, Share};
 use crate::error::Result;
 use crate::transport::PixelSampler;
 
+/// Samples without which a pixel has no variance.
+pub(super) const FEWEST: u32 = 2;
+
 /// What became of one side.
 pub struct RenderedSide {
     /// The film, consistent however the render ended.
@@ -39,6 +42,9 @@ pub struct Amount {
     /// without it of samples. It ends with a whole piece of work, so it is exceeded by a little,
     /// which the sides tell.
     pub cpu_seconds: Option<f64>,
+    /// Whether all pixels get equally many samples, two at least, whatever time that takes. Where
+    /// there are few of them, one part of the picture would else count more than the other.
+    pub evenly: bool,
 }
 
 impl Amount {
@@ -104,22 +110,39 @@ impl Turning {
 
     /// Does one piece of work, no longer than what is left of its CPU time.
     fn turn(&mut self, pool: &Pool, stop: &(dyn Fn() -> bool + Sync)) {
-        let cpu_seconds = self.amount.cpu_seconds;
-        if let Some(all) = cpu_seconds {
-            // The schedule counts seconds in which all threads work.
-            let left = (all - self.engine.cpu_seconds()) / pool.threads() as f64;
-            let seconds = Some(self.engine.seconds() + left);
-            self.engine.set_limits(Limits { seconds, ..self.amount.limits() });
+        if let Some(all) = self.amount.cpu_seconds {
+            let left = all - self.engine.cpu_seconds();
+            self.engine.set_limits(self.limits(left, pool.threads()));
         }
         match self.engine.step(pool, false, stop) {
             Step::Worked | Step::Interrupted => {}
             Step::Paused | Step::Done => self.closed = true,
             Step::Failed(failure) => (self.closed, self.failure) = (true, Some(failure)),
         }
-        self.closed |= cpu_seconds.is_some_and(|all| self.engine.cpu_seconds() >= all);
+        let is_over = |all: f64| self.engine.cpu_seconds() >= all;
+        self.closed |= self.amount.cpu_seconds.is_some_and(is_over) && !self.is_uneven();
         if self.history.wants(self.engine.cpu_seconds()) {
             self.note_noise(pool);
         }
+    }
+
+    /// When the next piece of work has to end, with so much of the CPU time left. Behind it only to
+    /// bring all pixels to the same number of samples.
+    fn limits(&self, left: f64, threads: usize) -> Limits {
+        let limits = self.amount.limits();
+        if left > 0.0 {
+            // The schedule counts seconds in which all threads work.
+            let seconds = Some(self.engine.seconds() + left / threads as f64);
+            return Limits { seconds, ..limits };
+        }
+        let (_, most) = self.engine.film().sample_range();
+        Limits { spp: most.max(FEWEST), seconds: None }
+    }
+
+    /// Whether some pixels still lack samples that others have.
+    fn is_uneven(&self) -> bool {
+        let (fewest, most) = self.engine.film().sample_range();
+        self.amount.evenly && (fewest < most || fewest < FEWEST)
     }
 
     /// Adds the present noise to the history, if every pixel has one.

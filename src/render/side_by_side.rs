@@ -51,7 +51,7 @@ pub fn render_side_by_side(
     progress: &mut dyn FnMut(&[Account; 2]),
 ) -> Result<RenderedPair> {
     let pool = Pool::new(job.threads, Priority::Normal)?;
-    let amount = Amount { spp: job.spp, cpu_seconds: job.cpu_seconds };
+    let amount = Amount { spp: job.spp, cpu_seconds: job.cpu_seconds, evenly: false };
     let [a, b] = job.samplers;
     let mut sides = [Turning::new(a, job.size, amount)?, Turning::new(b, job.size, amount)?];
     let interrupted = take_turns(&mut sides, &pool, interrupt, &mut |accounts| {

@@ -22,7 +22,7 @@ pub use ranking::{Entry, Gain, Ranking, Worth};
 
 use super::compare::Side;
 use super::film::Totals;
-use super::in_turns::{Amount, Turning, take_turns};
+use super::in_turns::{Amount, FEWEST, RenderedSide, Turning, take_turns};
 use super::pool::{Failure, Pool};
 use super::turns::Account;
 use crate::error::{Error, Result};
@@ -34,7 +34,7 @@ use crate::transport::{Frame, PixelSampler, Scene};
 pub const DEFAULT_SECONDS: f64 = 3.0;
 
 /// Most pixels of a film whose size nobody asks for.
-const MOST_PIXELS: f32 = 16_384.0;
+const MOST_PIXELS: f32 = 8192.0;
 
 /// The size of a film that is quick to measure and shows the same as one of `size` pixels.
 pub fn quick_size(size: UVec2) -> UVec2 {
@@ -120,11 +120,21 @@ pub fn sweep(
     let mut swept = Swept { tried: vec![None; job.trials.len()], interrupted, failure: None };
     for (number, side) in std::iter::zip(numbers, sides) {
         let rendered = side.finish(pool);
-        let side = pool.install(|| Side::of(&rendered.film, rendered.cpu_seconds));
+        let side = pool.install(|| measured(&rendered));
         swept.tried[number] = Some(Tried { side, totals: rendered.film.totals });
         swept.failure = swept.failure.or(rendered.failure.map(|failure| (number, failure)));
     }
     Ok(swept)
+}
+
+/// Noise and cost of a strategy; no noise where some pixels have none yet, as those that do are no
+/// fair part of the picture.
+fn measured(rendered: &RenderedSide) -> Side {
+    let side = Side::of(&rendered.film, rendered.cpu_seconds);
+    match side.fewest_samples < FEWEST {
+        true => Side { variance_of_mean: None, variance_error: None, noise: None, ..side },
+        false => side,
+    }
 }
 
 /// Frames the scene with every strategy that is to be rendered; their probes, placed once for all

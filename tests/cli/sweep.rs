@@ -55,7 +55,7 @@ fn sweep_takes_a_quick_film_and_the_strategy_as_it_is_set() {
     let large = ["sweep", "scene.toml", "--set", "film.size=[640, 480]", "--time", "0.05"];
     let set = ["--set", "strategy.nee=false", "--set", "strategy.majorant_boost=false"];
     let text = place.succeed(&[&large[..], &set].concat());
-    assert!(text.contains("148 x 111 pixels"), "{text}");
+    assert!(text.contains("105 x 78 pixels"), "{text}");
     assert!(text.contains("the toggles as set"), "{text}");
     assert_eq!(files_of(place.0.path()), ["scene.toml"]);
     let small = ["sweep", "scene.toml", "--size", "12x8", "--spp", "2", "--threads", "1"];

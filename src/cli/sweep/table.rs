@@ -74,9 +74,9 @@ struct ToggleRow {
 
 /// The columns of the ranking. Times are for the same noise.
 const COLUMNS: [&str; 6] =
-    ["strategy", "time/baseline's", "time/best's", "noise", "variance x time", "spp"];
+    ["strategy", "of baseline's time", "of best's time", "noise", "variance x time", "spp"];
 /// The columns of the toggles.
-const GAINS: [&str; 3] = ["toggle", "alone, time/baseline's", "left out, time/full's"];
+const GAINS: [&str; 3] = ["toggle", "alone, of baseline's time", "left out, of full's time"];
 
 impl Table {
     /// The table of what was swept of a scene with this name and film, by so many threads in so many

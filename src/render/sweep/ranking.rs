@@ -47,7 +47,7 @@ pub struct Ranking {
     /// The trials, the fastest first and what does the same behind its twin; last those of which
     /// nothing is known.
     pub entries: Vec<Entry>,
-    /// The number of the entry to leave on; none while nothing is known.
+    /// The number of the entry to leave on; none while something is not known yet.
     pub leave_on: Option<usize>,
     /// What each toggle brings, in the order of the strategy.
     pub worths: Vec<Worth>,
@@ -73,7 +73,9 @@ impl Ranking {
             over_best: all.speed_up(best, Some(number)),
         };
         let entries: Vec<Entry> = order.iter().map(entry).collect();
-        let leave_on = best.map(|_| leave_on(&entries));
+        // What is not known yet may be the best of all.
+        let all_known = entries.iter().all(|entry| entry.is_known() || !entry.is_rendered());
+        let leave_on = best.filter(|_| all_known).map(|_| leave_on(&entries));
         Self { entries, leave_on, worths: Toggle::ALL.map(|toggle| all.worth(toggle)).to_vec() }
     }
 
@@ -98,6 +100,11 @@ impl Entry {
     /// Whether so little is known that it may well be the best or far from it.
     pub fn is_vague(&self) -> bool {
         self.over_best.is_some_and(|speed_up| speed_up.is_vague())
+    }
+
+    /// Whether its noise and its cost are known.
+    fn is_known(&self) -> bool {
+        self.side.is_some_and(|side| side.is_noiseless() || side.variance_times_time().is_some())
     }
 
     /// Whether it was rendered itself.
