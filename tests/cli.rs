@@ -1,5 +1,8 @@
 //! The program from end to end: what it writes, prints and returns.
 
+#[path = "cli/sweep.rs"]
+mod sweep;
+
 use std::path::{Path, PathBuf};
 
 use assert_cmd::Command;

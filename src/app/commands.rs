@@ -3,6 +3,8 @@
 
 use egui::{Context, Key, KeyboardShortcut, Modifiers};
 
+use crate::transport::toggle::Toggle;
+
 /// Something that the user can ask for without a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[allow(missing_docs, reason = "`text` and `tooltip` say what each is")]
@@ -46,6 +48,8 @@ pub enum Command {
     LoadReference,
     PictureAsReference,
     RemoveReference,
+    /// Try every strategy on the shot.
+    Sweep,
     KeepSnapshot,
     PreviousSnapshot,
     NextSnapshot,
@@ -60,7 +64,7 @@ use Command as C;
 
 impl Command {
     /// All of them, in the order of the help page.
-    pub const ALL: [Self; 46] = [
+    pub const ALL: [Self; 47] = [
         C::Open,
         C::OpenPath,
         C::SaveExr,
@@ -99,6 +103,7 @@ impl Command {
         C::LoadReference,
         C::PictureAsReference,
         C::RemoveReference,
+        C::Sweep,
         C::KeepSnapshot,
         C::PreviousSnapshot,
         C::NextSnapshot,
@@ -122,11 +127,11 @@ impl Command {
             C::Redo => "Redo",
             C::PauseResume => "Pause or resume",
             C::Restart => "Restart",
-            C::EmissionDecoupling => "Emission decoupling",
-            C::EmissionRatioTracking => "Emission ratio tracking",
-            C::MajorantBoost => "Majorant boost",
-            C::FireAsLight => "Fire as a light",
-            C::Probes => "Light probes",
+            C::EmissionDecoupling => Toggle::EmissionDecoupling.name(),
+            C::EmissionRatioTracking => Toggle::EmissionRatioTracking.name(),
+            C::MajorantBoost => Toggle::MajorantBoost.name(),
+            C::FireAsLight => Toggle::FireAsLight.name(),
+            C::Probes => Toggle::Probes.name(),
             C::FrameVolume => "Frame the volume",
             C::FitPicture => "Fit the picture",
             C::ZoomToPixels => "Zoom to pixels",
@@ -150,6 +155,7 @@ impl Command {
             C::LoadReference => "Load reference…",
             C::PictureAsReference => "Use picture as reference",
             C::RemoveReference => "Remove the reference",
+            C::Sweep => "Try all strategies",
             C::KeepSnapshot => "Keep snapshot",
             C::PreviousSnapshot => "Previous snapshot",
             C::NextSnapshot => "Next snapshot",
@@ -233,6 +239,10 @@ impl Command {
                  the limit, so let it refine for long."
             }
             C::RemoveReference => "Measure against nothing any more.",
+            C::Sweep => {
+                "Try every strategy on this shot for a few seconds each and rank them: which to \
+                 leave on, what each toggle brings. The picture waits meanwhile."
+            }
             C::KeepSnapshot => {
                 "Keep the picture as it is in the strip, with all that is needed to go on from it."
             }
@@ -289,6 +299,7 @@ impl Command {
             C::LoadReference => (Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::O),
             C::PictureAsReference => (Modifiers::COMMAND, Key::K),
             C::RemoveReference => (Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::K),
+            C::Sweep => (Modifiers::SHIFT, Key::C),
             C::KeepSnapshot => (Modifiers::NONE, Key::K),
             C::PreviousSnapshot => (Modifiers::NONE, Key::ArrowLeft),
             C::NextSnapshot => (Modifiers::NONE, Key::ArrowRight),

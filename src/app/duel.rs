@@ -184,6 +184,13 @@ impl Duel {
         }
     }
 
+    /// Lets it wait for something else, or go on.
+    pub fn set_held(&mut self, held: bool) {
+        if let Some(rival) = &mut self.rival {
+            rival.set_held(held);
+        }
+    }
+
     /// Throws its samples away.
     pub fn restart(&mut self) {
         if let Some(rival) = &mut self.rival {

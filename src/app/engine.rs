@@ -63,6 +63,8 @@ pub struct Engine {
     /// The latest generation whose failure was told.
     failed: u64,
     paused: bool,
+    /// Whether it waits for something else that needs the machine.
+    held: bool,
     extras: Extras,
     /// Whether what was built is another engine's.
     is_fresh: bool,
@@ -135,6 +137,7 @@ impl Engine {
             generation: 0,
             failed: 0,
             paused: false,
+            held: false,
             extras: Extras::default(),
             is_fresh: false,
             picture: None,
@@ -219,7 +222,20 @@ impl Engine {
     /// Pauses or resumes sampling.
     pub fn set_paused(&mut self, paused: bool) {
         self.paused = paused;
-        self.session.set_paused(paused);
+        self.session.set_paused(paused || self.held);
+    }
+
+    /// Whether it waits for something else that needs the machine.
+    pub fn held(&self) -> bool {
+        self.held
+    }
+
+    /// Lets it wait for something else, or go on unless it is paused.
+    pub fn set_held(&mut self, held: bool) {
+        if self.held != held {
+            self.held = held;
+            self.session.set_paused(self.paused || held);
+        }
     }
 
     /// Whether pictures bring the tracking steps of each pixel along.
@@ -396,12 +412,16 @@ impl Engine {
 
 /// Whether two settings build the same scene: all but the film decides.
 fn same_scene(a: &Settings, b: &Settings) -> bool {
-    let Settings { camera, film: _, path, environment, volume, light, surface, strategy } = a;
+    same_shot(a, b) && a.strategy == b.strategy
+}
+
+/// Whether two settings show the same: all but the film and the strategy decides.
+pub fn same_shot(a: &Settings, b: &Settings) -> bool {
+    let Settings { camera, film: _, path, environment, volume, light, surface, strategy: _ } = a;
     *camera == b.camera
         && *path == b.path
         && *environment == b.environment
         && *volume == b.volume
         && *light == b.light
         && *surface == b.surface
-        && *strategy == b.strategy
 }

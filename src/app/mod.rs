@@ -7,6 +7,7 @@
 //! - `duel`: two strategies on one scene, or a snapshot and the live picture, side by side.
 //! - `rectangle`, `yardstick`: a part of the picture and a reference that figures are told of;
 //!   `sheet`: all that in a file.
+//! - `sweep`: every strategy tried on the shot, and ranked.
 //! - `diagnostics`: cells over the picture and maps in its place, to understand a render.
 //! - `panels`, `widgets`, `notices`, `theme`: what is around it.
 //! - `files`, `saver`, `reopen`: choosing, writing and going on from files; `data`, `remembered`: what
@@ -20,7 +21,6 @@ mod data;
 mod diagnostics;
 mod display;
 mod duel;
-mod effect;
 mod engine;
 mod files;
 mod frame_stats;
@@ -38,6 +38,7 @@ mod saver;
 mod sheet;
 mod snapshots;
 mod state;
+mod sweep;
 mod theme;
 mod up_axis;
 mod viewport;
@@ -53,6 +54,7 @@ pub use engine::Engine;
 pub use files::Dialogs;
 pub use notices::{Level, Notice, Notices};
 pub use state::{Compared, Document, Editor, Side};
+pub use sweep::{Results, Sweep};
 pub use window::{App, Options};
 pub use yardstick::Measure;
 

@@ -7,6 +7,7 @@ mod layout;
 mod measures;
 mod paths;
 mod stored;
+mod sweep;
 mod view;
 
 use std::path::{Path, PathBuf};
@@ -31,6 +32,7 @@ use super::remembered::Remembered;
 use super::saver::Saver;
 use super::snapshots::Snapshots;
 use super::state::{Compared, Editor, Side};
+use super::sweep::Sweep;
 use super::theme;
 use super::viewport::Viewport;
 use super::yardstick::Yardstick;
@@ -58,6 +60,7 @@ pub struct App {
     editor: Editor,
     engine: Engine,
     duel: Duel,
+    sweep: Sweep,
     viewport: Viewport,
     diagnostics: Diagnostics,
     notices: Notices,
@@ -114,6 +117,7 @@ impl App {
             editor,
             engine,
             duel: Duel::new(options.threads),
+            sweep: Sweep::new(options.threads),
             viewport: Viewport::default(),
             diagnostics: Diagnostics::default(),
             notices: Notices::default(),
@@ -165,6 +169,11 @@ impl App {
     /// The reference and the errors against it.
     pub fn yardstick(&self) -> &Yardstick {
         &self.yardstick
+    }
+
+    /// Every strategy tried on the shot.
+    pub fn sweep(&self) -> &Sweep {
+        &self.sweep
     }
 
     /// The messages shown.
@@ -222,6 +231,7 @@ impl App {
                     self.kept.opened(&settings);
                     self.editor.open(*settings, reopened.is_some());
                     self.viewport.zoom = Default::default();
+                    self.sweep.forget();
                     self.notices = Notices::default();
                     self.source = self.name_of(source);
                     self.versus = None;
@@ -304,6 +314,7 @@ impl App {
         }
         self.take_in(ctx, news);
         self.update_measures(ctx);
+        self.update_sweep(ctx);
     }
 
     /// The size of the film: its own or the window's; `None` before the first frame.

@@ -32,6 +32,7 @@ use crate::transport::{Frame, PixelSampler, Scene};
 use errors::Errors;
 use sides::Choice;
 use table::{SideRow, Table};
+pub(super) use table::{SpeedUpRow, put};
 
 /// CPU seconds of each side where the command line says nothing.
 const DEFAULT_SECONDS: f64 = 10.0;
@@ -146,7 +147,7 @@ fn settings_of_sides(arguments: &Arguments, shared: &Settings) -> Result<[Settin
 }
 
 /// Makes the folder of the results, before anything is rendered in vain.
-fn make_folder(folder: &Path) -> Result<()> {
+pub(super) fn make_folder(folder: &Path) -> Result<()> {
     check_folder(folder)?;
     match folder.is_dir() {
         true => Ok(()),
@@ -180,13 +181,19 @@ fn job(arguments: &Arguments, sides: &[Prepared; 2]) -> PairJob {
     }
 }
 
+/// A bar of so many steps on standard error, if that is a terminal.
+pub(super) fn progress_bar(steps: u64) -> ProgressBar {
+    let bar = ProgressBar::new(steps);
+    let style = ProgressStyle::with_template("{bar:40} {msg} · {elapsed} · {eta} left");
+    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    bar
+}
+
 /// Renders both with a progress bar on standard error, if that is a terminal.
 fn show_progress(job: PairJob, interrupt: &AtomicBool) -> Result<RenderedPair> {
     const STEPS: u64 = 1000;
     let (spp, cpu_seconds) = (job.spp, job.cpu_seconds);
-    let bar = ProgressBar::new(STEPS);
-    let style = ProgressStyle::with_template("{bar:40} {msg} · {elapsed} · {eta} left");
-    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    let bar = progress_bar(STEPS);
     let part = |account: &Account| {
         let by_samples = if spp > 0 { account.samples / f64::from(spp) } else { 0.0 };
         let by_time = cpu_seconds.map_or(0.0, |end| account.cpu_seconds / end);
@@ -266,7 +273,7 @@ fn conclude(
 }
 
 /// What failed, and the command that follows the very path.
-fn failed(name: &str, failure: &Failure, scene: &str) -> String {
+pub(super) fn failed(name: &str, failure: &Failure, scene: &str) -> String {
     match failure.replay_options() {
         Some(path) => {
             format!("{name}: {failure} (`flambeau replay {scene} {path}` follows that path)")

@@ -10,6 +10,7 @@ mod render;
 mod replay;
 mod scene_source;
 mod stats;
+mod sweep;
 
 use std::process::ExitCode;
 
@@ -35,6 +36,12 @@ enum Command {
     Render(Box<render::Arguments>),
     /// Hold two sampling strategies against each other: noise, cost and the ratio between them.
     Compare(Box<compare::Arguments>),
+    /// Try every strategy on a scene for a few seconds each, and rank them.
+    ///
+    /// Says which to leave on, what each toggle brings alone and what is lost without it. The finer
+    /// choices of --set hold for all. Unless --size is given, the film is small enough to be measured
+    /// in seconds.
+    Sweep(Box<sweep::Arguments>),
     /// Print every key of the scene file: type, unit, default, range, help.
     Keys(keys::Arguments),
     /// Say what is in a volume, a snapshot or a scene.
@@ -90,6 +97,7 @@ pub fn run() -> ExitCode {
     let result = match arguments.command {
         Some(Command::Render(arguments)) => render::run(&arguments),
         Some(Command::Compare(arguments)) => compare::run(&arguments),
+        Some(Command::Sweep(arguments)) => sweep::run(&arguments),
         Some(Command::Keys(arguments)) => keys::run(&arguments),
         Some(Command::Info(arguments)) => info::run(&arguments),
         Some(Command::Replay(arguments)) => replay::run(&arguments),

@@ -48,6 +48,11 @@ impl SceneArguments {
         Ok(settings)
     }
 
+    /// The size that the command line asks for.
+    pub fn size(&self) -> Option<UVec2> {
+        self.size
+    }
+
     /// What the scene is called on the command line.
     pub fn name(&self) -> &str {
         &self.scene

@@ -2,10 +2,11 @@
 //!
 //! [`exr`] keeps everything and can be continued; [`npy`] is the beauty for scripts; [`png`] is what
 //! the screen shows, through the curves of [`tone`]. [`ramp`] turns numbers into colors, [`map`] a
-//! number a pixel into a picture with its [`legend`], [`plot`] numbers over time into curves;
-//! [`sheet`] is a view with its figures below.
+//! number a pixel into a picture with its [`legend`], [`plot`] numbers over time into curves, [`bars`]
+//! some that are compared into a chart; [`sheet`] is a view with its figures below.
 //! [`metrics`] tell how far a picture is from a [`reference`](mod@reference).
 
+pub mod bars;
 mod drawing;
 pub mod exr;
 mod exr_color;
@@ -13,6 +14,7 @@ mod exr_header;
 mod exr_layout;
 pub mod figures;
 pub mod legend;
+mod log_axis;
 pub mod map;
 pub mod metrics;
 pub mod npy;

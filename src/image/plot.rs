@@ -5,6 +5,7 @@ use std::path::Path;
 use glam::UVec2;
 
 use super::drawing::{Align, Canvas, Place, color};
+use super::log_axis::LogAxis;
 use crate::error::Result;
 
 /// A named curve.
@@ -37,10 +38,6 @@ const SIZE: UVec2 = UVec2::new(900, 560);
 /// Borders of the field of the curves: left, top, right, bottom.
 const FIELD: [i32; 4] = [90, 74, 876, 496];
 const COLORS: [[u8; 3]; 2] = [[94, 169, 255], [255, 159, 67]];
-/// The least that an axis spans, as a factor.
-const LEAST_SPAN: f64 = 3.0;
-/// What is left free around the curves, as a factor.
-const MARGIN: f64 = 1.15;
 
 /// Draws `plot` and writes it.
 ///
@@ -63,7 +60,7 @@ pub fn write(path: &Path, plot: &Plot<'_>) -> Result<()> {
         canvas.text(middle, Align::Center, color::DIM, "There are too few samples for a curve")?;
         return canvas.write(path);
     }
-    let scales = [0, 1].map(|axis| Scale::over(points().map(|point| point[axis]), axis));
+    let scales = [0, 1].map(|axis| axis_over(points().map(|point| point[axis]), axis));
     grid(&mut canvas, plot, &scales)?;
     for (number, curve) in plot.curves.iter().enumerate() {
         let color = COLORS[number % COLORS.len()];
@@ -74,42 +71,13 @@ pub fn write(path: &Path, plot: &Plot<'_>) -> Result<()> {
     canvas.write(path)
 }
 
-/// One logarithmic axis.
-struct Scale {
-    low: f64,
-    high: f64,
-    /// Where its ends are.
-    pixels: [i32; 2],
+/// The axis across (0) or up (1) that covers `values`.
+fn axis_over(values: impl Iterator<Item = f64>, axis: usize) -> LogAxis {
+    let [left, top, right, bottom] = FIELD;
+    LogAxis::over(values, if axis == 0 { [left, right] } else { [bottom, top] })
 }
 
-impl Scale {
-    fn over(values: impl Iterator<Item = f64>, axis: usize) -> Self {
-        let [left, top, right, bottom] = FIELD;
-        let pixels = if axis == 0 { [left, right] } else { [bottom, top] };
-        let (low, high) =
-            values.fold((f64::INFINITY, 0.0_f64), |(low, high), x| (low.min(x), high.max(x)));
-        let widened = (LEAST_SPAN * low / high).max(1.0).sqrt() * MARGIN;
-        Self { low: low / widened, high: high * widened, pixels }
-    }
-
-    fn pixel(&self, value: f64) -> i32 {
-        let place = (value / self.low).ln() / (self.high / self.low).ln();
-        let [start, end] = self.pixels.map(f64::from);
-        (start + place * (end - start)).round() as i32
-    }
-
-    /// The numbers to write along it: 1, 2 and 5 times powers of ten, or the powers alone where
-    /// those would be too many.
-    fn ticks(&self) -> Vec<f64> {
-        let decades = (self.high / self.low).log10();
-        let steps: &[f64] = if decades <= 3.0 { &[1.0, 2.0, 5.0] } else { &[1.0] };
-        let powers = self.low.log10().floor() as i32..=self.high.log10().ceil() as i32;
-        let all = powers.flat_map(|power| steps.iter().map(move |step| step * 10_f64.powi(power)));
-        all.filter(|tick| (self.low..=self.high).contains(tick)).collect()
-    }
-}
-
-fn grid(canvas: &mut Canvas, plot: &Plot<'_>, scales: &[Scale; 2]) -> Result<()> {
+fn grid(canvas: &mut Canvas, plot: &Plot<'_>, scales: &[LogAxis; 2]) -> Result<()> {
     let [left, top, right, bottom] = FIELD;
     for tick in scales[0].ticks() {
         let x = scales[0].pixel(tick);
@@ -124,7 +92,12 @@ fn grid(canvas: &mut Canvas, plot: &Plot<'_>, scales: &[Scale; 2]) -> Result<()>
     Ok(())
 }
 
-fn draw(canvas: &mut Canvas, curve: &Curve<'_>, scales: &[Scale; 2], color: [u8; 3]) -> Result<()> {
+fn draw(
+    canvas: &mut Canvas,
+    curve: &Curve<'_>,
+    scales: &[LogAxis; 2],
+    color: [u8; 3],
+) -> Result<()> {
     let place =
         |point: &[f64; 2]| -> Place { (scales[0].pixel(point[0]), scales[1].pixel(point[1])) };
     let places: Vec<Place> = curve.points.iter().map(place).collect();
@@ -161,7 +134,7 @@ mod tests {
         let picture =
             drawn(&[Curve { name: "A", points: &points }, Curve { name: "B", points: &[] }]);
         assert_eq!(picture.dimensions(), (SIZE.x, SIZE.y));
-        let scales = [0, 1].map(|axis| Scale::over(points.iter().map(|point| point[axis]), axis));
+        let scales = [0, 1].map(|axis| axis_over(points.iter().map(|point| point[axis]), axis));
         for point in &points[1..39] {
             let [x, y] = [0, 1].map(|axis| scales[axis].pixel(point[axis]) as u32);
             let is_blue = |x: u32, y: u32| {
@@ -177,16 +150,5 @@ mod tests {
         drawn(&[]);
         drawn(&[Curve { name: "one", points: &[[3.0, 0.1]] }]);
         drawn(&[Curve { name: "flat", points: &[[1e-9, 0.1], [1e9, 0.1]] }]);
-    }
-
-    #[test]
-    fn ticks_are_round_and_on_the_axis() {
-        let ticks = |low, high| Scale { low, high, pixels: [0, 100] }.ticks();
-        let close = |a: Vec<f64>, b: &[f64]| {
-            assert_eq!(a.len(), b.len(), "{a:?}");
-            assert!(a.iter().zip(b).all(|(a, b)| (a / b - 1.0).abs() < 1e-9), "{a:?}");
-        };
-        close(ticks(0.15, 12.0), &[0.2, 0.5, 1.0, 2.0, 5.0, 10.0]);
-        close(ticks(0.003, 90.0), &[0.01, 0.1, 1.0, 10.0]);
     }
 }

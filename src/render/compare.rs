@@ -56,6 +56,29 @@ impl Side {
         let stats = &picture.stats;
         Self { samples_per_pixel: stats.samples_per_pixel, ..whole.side(stats.cpu_seconds) }
     }
+
+    /// Of a film on which the threads spent so many seconds of CPU time.
+    ///
+    /// Works on the threads of the calling pool, with the same result for any number of them.
+    pub fn of(film: &Film, cpu_seconds: f64) -> Self {
+        let blocks = Area::of(film.size()).blocks();
+        let tallies: Vec<Tally> = blocks.par_iter().map(|block| Tally::of(film, block)).collect();
+        let whole = tallies.iter().fold(Tally::default(), |sum, part| sum.plus(part));
+        whole.side(cpu_seconds)
+    }
+
+    /// Whether no sample differed from another of its pixel.
+    pub fn is_noiseless(&self) -> bool {
+        self.variance_of_mean == Some(0.0)
+    }
+
+    /// Variance of the mean times CPU time, which hardly changes as a render goes on, with its
+    /// relative standard error; none where there is no noise or no measured time.
+    pub fn variance_times_time(&self) -> Option<(f64, f64)> {
+        let variance = self.variance_of_mean.filter(|&variance| variance > 0.0)?;
+        let relative_error = self.variance_error? / variance;
+        (self.cpu_seconds > 0.0).then_some((variance * self.cpu_seconds, relative_error))
+    }
 }
 
 /// What two films say about each other.

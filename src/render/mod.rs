@@ -4,15 +4,16 @@
 //!   bit for bit; [`estimate`] reads means and variances from them, [`publish`] whole pictures.
 //! - [`schedule`]: pure logic; from what is done and what it cost to the next piece of work.
 //! - [`pool`] does one piece of work on all threads, [`engine`] repeats that. The window's
-//!   [`session`] and the command line's [`headless`] both drive the same engine; where two of them
+//!   [`session`] and the command line's [`headless`] both drive the same engine; where several
 //!   share the threads, [`turns`] says whose turn it is; [`side_by_side`] renders two so, and
-//!   [`compare`] holds their films against each other.
+//!   [`compare`] holds their films against each other; [`sweep`] does it with all strategies.
 
 pub mod compare;
 pub mod engine;
 pub mod estimate;
 pub mod film;
 pub mod headless;
+pub mod in_turns;
 pub mod layers;
 pub mod pair;
 pub mod pool;
@@ -20,6 +21,7 @@ pub mod publish;
 pub mod schedule;
 pub mod session;
 pub mod side_by_side;
+pub mod sweep;
 mod thread_time;
 pub mod turns;
 

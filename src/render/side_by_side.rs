@@ -2,19 +2,17 @@
 //! both have had the same share whenever they are compared.
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 use glam::UVec2;
 
-use super::compare::NoiseHistory;
-use super::engine::{Engine, Step};
-use super::estimate::{FilmStats, samples_per_pixel};
-use super::film::Film;
-use super::pool::{Failure, Pool, Priority};
-use super::schedule::Limits;
-use super::turns::{self, Account, Share};
+use super::in_turns::{Amount, Turning, take_turns};
+use super::pool::{Pool, Priority};
+use super::turns::Account;
 use crate::error::Result;
 use crate::transport::PixelSampler;
+
+pub use super::in_turns::RenderedSide;
 
 /// What to compare and for how long.
 pub struct PairJob {
@@ -30,20 +28,6 @@ pub struct PairJob {
     pub cpu_seconds: Option<f64>,
     /// Number of threads; none: one a core.
     pub threads: Option<usize>,
-}
-
-/// What became of one side.
-pub struct RenderedSide {
-    /// The film, consistent however the render ended.
-    pub film: Film,
-    /// CPU time of the threads that sampled it, in seconds.
-    pub cpu_seconds: f64,
-    /// Seconds during which they did.
-    pub seconds: f64,
-    /// How its noise went down.
-    pub history: NoiseHistory,
-    /// The sample that ended it.
-    pub failure: Option<Failure>,
 }
 
 /// What became of both.
@@ -66,102 +50,23 @@ pub fn render_side_by_side(
     interrupt: &AtomicBool,
     progress: &mut dyn FnMut(&[Account; 2]),
 ) -> Result<RenderedPair> {
-    let share = if job.cpu_seconds.is_some() { Share::CpuTime } else { Share::Samples };
     let pool = Pool::new(job.threads, Priority::Normal)?;
+    let amount = Amount { spp: job.spp, cpu_seconds: job.cpu_seconds, evenly: false };
     let [a, b] = job.samplers;
-    let limits = Limits { spp: job.spp, seconds: None };
-    let mut sides = [
-        Turning::new(Engine::new(a, Film::new(job.size)?, limits, None)),
-        Turning::new(Engine::new(b, Film::new(job.size)?, limits, None)),
-    ];
-    let stop = || interrupt.load(Ordering::Relaxed);
-    let mut accounts = [Account::default(); 2];
-    let mut interrupted = false;
-    while let Some(next) = turns::next(&accounts, share) {
-        interrupted = stop();
-        if interrupted {
-            break;
+    let mut sides = [Turning::new(a, job.size, amount)?, Turning::new(b, job.size, amount)?];
+    let interrupted = take_turns(&mut sides, &pool, interrupt, &mut |accounts| {
+        if let [a, b] = accounts {
+            progress(&[*a, *b]);
         }
-        let side = &mut sides[next];
-        side.turn(&pool, limits, job.cpu_seconds, &stop);
-        accounts[next] = side.account();
-        if side.failure.is_some() {
-            break;
-        }
-        progress(&accounts);
-    }
+    });
     let sides = sides.map(|side| side.finish(&pool));
     Ok(RenderedPair { sides, pool, interrupted })
 }
 
-/// A side under way.
-struct Turning {
-    engine: Engine,
-    history: NoiseHistory,
-    closed: bool,
-    failure: Option<Failure>,
-}
-
-impl Turning {
-    fn new(engine: Engine) -> Self {
-        Self { engine, history: NoiseHistory::default(), closed: false, failure: None }
-    }
-
-    /// Does one piece of work, no longer than what is left of `cpu_seconds`.
-    fn turn(
-        &mut self,
-        pool: &Pool,
-        limits: Limits,
-        cpu_seconds: Option<f64>,
-        stop: &(dyn Fn() -> bool + Sync),
-    ) {
-        if let Some(all) = cpu_seconds {
-            // The schedule counts seconds in which all threads work.
-            let left = (all - self.engine.cpu_seconds()) / pool.threads() as f64;
-            let seconds = Some(self.engine.seconds() + left);
-            self.engine.set_limits(Limits { seconds, ..limits });
-        }
-        match self.engine.step(pool, false, stop) {
-            Step::Worked | Step::Interrupted => {}
-            Step::Paused | Step::Done => self.closed = true,
-            Step::Failed(failure) => (self.closed, self.failure) = (true, Some(failure)),
-        }
-        self.closed |= cpu_seconds.is_some_and(|all| self.engine.cpu_seconds() >= all);
-        if self.history.wants(self.engine.cpu_seconds()) {
-            self.note_noise(pool);
-        }
-    }
-
-    /// Adds the present noise to the history, if every pixel has one.
-    fn note_noise(&mut self, pool: &Pool) {
-        let film = self.engine.film();
-        let (fewest, _) = film.sample_range();
-        if fewest < 2 {
-            return;
-        }
-        if let Some(noise) = pool.install(|| FilmStats::of(film)).noise {
-            self.history.push(self.engine.cpu_seconds(), noise);
-        }
-    }
-
-    fn account(&self) -> Account {
-        Account {
-            cpu_seconds: self.engine.cpu_seconds(),
-            samples: samples_per_pixel(self.engine.film()),
-            closed: self.closed,
-        }
-    }
-
-    fn finish(mut self, pool: &Pool) -> RenderedSide {
-        self.note_noise(pool);
-        let (cpu_seconds, seconds) = (self.engine.cpu_seconds(), self.engine.seconds());
-        let (film, _) = self.engine.into_parts();
-        RenderedSide { film, cpu_seconds, seconds, history: self.history, failure: self.failure }
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use std::sync::atomic::Ordering;
+
     use super::*;
     use crate::render::synthetic::{Level, Uniform};
     use crate::transport::PathSample;

@@ -66,6 +66,23 @@ mod tests {
         }
     }
 
+    /// The same with many of them, some of which end early.
+    #[test]
+    fn many_sides_stay_within_the_longest_piece_of_each_other() {
+        let pieces = [0.02, 0.31, 0.07, 0.11, 0.05, 0.19, 0.03, 0.23, 0.13, 0.017, 0.29, 0.041];
+        let mut accounts = [Account::default(); 12];
+        for _ in 0..2000 {
+            let side = next(&accounts, Share::CpuTime).unwrap();
+            accounts[side].cpu_seconds += pieces[side];
+            accounts[side].closed = side % 4 == 1 && accounts[side].cpu_seconds > 3.0;
+            let open = || accounts.iter().filter(|account| !account.closed);
+            let had = || open().map(|account| account.cpu_seconds);
+            let [least, most] = [had().fold(f64::MAX, f64::min), had().fold(0.0, f64::max)];
+            assert!(most - least <= 0.31 + 1e-9, "{accounts:?}");
+        }
+        assert!(accounts.iter().filter(|account| account.closed).count() == 3);
+    }
+
     #[test]
     fn the_first_begins_and_equal_sides_alternate() {
         let mut accounts = [Account::default(); 2];

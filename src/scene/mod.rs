@@ -9,6 +9,7 @@ mod build;
 pub mod cache;
 mod check;
 mod describe;
+pub mod effect;
 mod embedded;
 mod files;
 mod fingerprints;

@@ -20,6 +20,7 @@ pub mod shadow;
 mod site;
 pub mod strategy;
 mod stratified;
+pub mod toggle;
 pub mod tracking;
 mod transmittance;
 mod tuning;

@@ -8,6 +8,7 @@ mod display;
 mod keeping;
 mod reference;
 mod snapshots;
+mod sweep;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

@@ -7,8 +7,8 @@ use egui::{Button, Key, ProgressBar, RichText, TextEdit, Ui};
 use crate::app::files::Purpose;
 use crate::app::theme::{color, space};
 
-/// Shows how far a load is; whether it should be cancelled.
-pub fn progress(ui: &mut Ui, what: &str, fraction: f32) -> bool {
+/// Shows how far something is; whether it should be cancelled, which does what `help` says.
+pub fn progress(ui: &mut Ui, what: &str, fraction: f32, help: &str) -> bool {
     ui.horizontal(|ui| {
         ui.label(RichText::new(what).color(color::TEXT_STRONG));
         let bar = ProgressBar::new(fraction)
@@ -16,7 +16,7 @@ pub fn progress(ui: &mut Ui, what: &str, fraction: f32) -> bool {
             .desired_height(8.0)
             .fill(color::ACCENT);
         ui.add(bar);
-        ui.button("Cancel").on_hover_text("Stop loading and keep what is shown.").clicked()
+        ui.button("Cancel").on_hover_text(help).clicked()
     })
     .inner
 }

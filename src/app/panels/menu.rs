@@ -16,11 +16,12 @@ const VIEW: [&[Command]; 4] = [
     &[Command::NextToneCurve, Command::FalseColor],
     &[Command::FoldPanels],
 ];
-const COMPARE: [&[Command]; 4] = [
+const COMPARE: [&[Command]; 5] = [
     &[Command::Compare, Command::NextLayout, Command::SaveComparison],
     &[Command::SwitchSide, Command::SwapSides, Command::CopySide],
     &[Command::Rectangle],
     &[Command::LoadReference, Command::PictureAsReference, Command::RemoveReference],
+    &[Command::Sweep],
 ];
 const SNAPSHOTS: [&[Command]; 4] = [
     &[Command::KeepSnapshot, Command::FoldStrip],

@@ -17,6 +17,7 @@ pub mod palette;
 pub mod status;
 pub mod strategy;
 pub mod strip;
+pub mod sweep;
 pub mod unsaved;
 pub mod volume;
 

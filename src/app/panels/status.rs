@@ -116,6 +116,7 @@ fn progress(ui: &mut Ui, stats: &RenderStats, engine: &Engine) {
     }
     let state = match (engine.paused(), stats.finished) {
         (true, _) => "paused",
+        (false, false) if engine.held() => "waiting",
         (false, true) => "finished",
         (false, false) => return,
     };

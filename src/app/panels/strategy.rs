@@ -4,38 +4,24 @@ use egui::{CollapsingHeader, Layout, RichText, Ui};
 
 use super::{Panel, advanced, compare, explain, section};
 use crate::app::commands::Command;
-use crate::app::effect::{Toggle, no_effect};
 use crate::app::theme::{color, space};
 use crate::app::widgets::{capitalized, key_help, key_summary, row, segments};
-use crate::transport::strategy::{Preset, Strategy};
+use crate::scene::effect::no_effect;
+use crate::transport::strategy::Preset;
+use crate::transport::toggle::Toggle;
 
-/// A toggle with its command, which knows its name and key, and its key in the scene file.
-const TOGGLES: [(Toggle, Command, &str); 5] = [
-    (Toggle::EmissionDecoupling, Command::EmissionDecoupling, "strategy.emission_decoupling"),
-    (
-        Toggle::EmissionRatioTracking,
-        Command::EmissionRatioTracking,
-        "strategy.emission_ratio_tracking",
-    ),
-    (Toggle::MajorantBoost, Command::MajorantBoost, "strategy.majorant_boost"),
-    (Toggle::FireAsLight, Command::FireAsLight, "strategy.nee"),
-    (Toggle::Probes, Command::Probes, "strategy.probe_mis"),
+/// The toggles with their commands, which know their keys.
+const TOGGLES: [(Toggle, Command); 5] = [
+    (Toggle::EmissionDecoupling, Command::EmissionDecoupling),
+    (Toggle::EmissionRatioTracking, Command::EmissionRatioTracking),
+    (Toggle::MajorantBoost, Command::MajorantBoost),
+    (Toggle::FireAsLight, Command::FireAsLight),
+    (Toggle::Probes, Command::Probes),
 ];
-
-/// The switch of `toggle` in `strategy`.
-pub fn switch(strategy: &mut Strategy, toggle: Toggle) -> &mut bool {
-    match toggle {
-        Toggle::EmissionDecoupling => &mut strategy.emission_decoupling,
-        Toggle::EmissionRatioTracking => &mut strategy.emission_ratio_tracking,
-        Toggle::MajorantBoost => &mut strategy.majorant_boost,
-        Toggle::FireAsLight => &mut strategy.nee,
-        Toggle::Probes => &mut strategy.probe_mis,
-    }
-}
 
 /// The toggle that `command` switches.
 pub fn toggle_of(command: Command) -> Option<Toggle> {
-    TOGGLES.iter().find(|(_, other, _)| *other == command).map(|(toggle, ..)| *toggle)
+    TOGGLES.iter().find(|(_, other)| *other == command).map(|(toggle, _)| *toggle)
 }
 
 /// Shows the section.
@@ -48,9 +34,9 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
             let text = RichText::new(text).small().color(color::WARNING);
             ui.add(egui::Label::new(text).wrap()).on_hover_text(key_help("strategy.integrator"));
         }
-        for (toggle, command, key) in TOGGLES {
+        for (toggle, command) in TOGGLES {
             ui.add_space(space::TIGHT);
-            row_of(ui, panel, toggle, command, key);
+            row_of(ui, panel, toggle, command);
         }
         ui.add_space(space::TIGHT);
         CollapsingHeader::new("Advanced").id_salt("strategy advanced").show(ui, |ui| {
@@ -59,7 +45,8 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
     });
 }
 
-fn row_of(ui: &mut Ui, panel: &mut Panel<'_>, toggle: Toggle, command: Command, key: &str) {
+fn row_of(ui: &mut Ui, panel: &mut Panel<'_>, toggle: Toggle, command: Command) {
+    let key = toggle.key();
     let idle = no_effect(toggle, &panel.editor.document.settings);
     ui.horizontal(|ui| {
         let strategy = &mut panel.editor.document.settings.strategy;
@@ -67,7 +54,7 @@ fn row_of(ui: &mut Ui, panel: &mut Panel<'_>, toggle: Toggle, command: Command, 
             Some(_) => color::TEXT_DIM,
             None => color::TEXT_STRONG,
         });
-        let response = ui.checkbox(switch(strategy, toggle), text).on_hover_text(key_help(key));
+        let response = ui.checkbox(toggle.switch(strategy), text).on_hover_text(key_help(key));
         if response.changed() {
             panel.editor.name_edit(command.text().to_lowercase());
         }

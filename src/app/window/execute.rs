@@ -42,6 +42,7 @@ impl App {
                     None => Some(Palette::default()),
                 };
             }
+            Command::Sweep => self.sweep.ask(&self.editor.document.settings),
             Command::Shortcuts => self.help = !self.help,
             _ if self.execute_stored(ctx, command) || self.execute_measure(ctx, command) => {}
             _ => self.edit(command),
@@ -93,7 +94,7 @@ impl App {
             }
             other => {
                 let Some(toggle) = strategy::toggle_of(other) else { return };
-                let switch = strategy::switch(&mut document.settings.strategy, toggle);
+                let switch = toggle.switch(&mut document.settings.strategy);
                 *switch = !*switch;
                 other.text()
             }

@@ -54,6 +54,7 @@ impl App {
         if let Some(path) = reopened {
             self.open_unless_lost(&path);
         }
+        self.sweep_window(ui.ctx(), commands);
     }
 
     /// What fixed panels lie on. A window that is cleared to their color spares the painting,
@@ -76,6 +77,7 @@ impl App {
         self.dropped_row(ui);
         self.progress_row(ui);
         self.unsaved_row(ui);
+        self.sweep_row(ui);
         self.measure_rows(ui);
         if !self.notices.list().is_empty() {
             egui::Panel::bottom("notices")
@@ -181,7 +183,8 @@ impl App {
         };
         let frame = theme::panel_frame();
         let row = egui::Panel::bottom("progress").frame(frame);
-        if row.show(ui, |ui| bars::progress(ui, &what, fraction)).inner {
+        let help = "Stop loading and keep what is shown.";
+        if row.show(ui, |ui| bars::progress(ui, &what, fraction, help)).inner {
             self.engine.cancel();
         }
     }

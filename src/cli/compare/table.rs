@@ -279,6 +279,7 @@ impl Table {
     }
 }
 
-fn put(path: &Path, text: &str) -> Result<()> {
+/// Writes a file of text.
+pub fn put(path: &Path, text: &str) -> Result<()> {
     files::replace(path, |file| file.write_all(text.as_bytes()).map_err(|e| Error::io(path, e)))
 }

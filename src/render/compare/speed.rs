@@ -24,16 +24,11 @@ pub struct SpeedUp {
 }
 
 impl SpeedUp {
-    /// The speed-up between two sides; none where one has no noise or no measured time.
+    /// The speed-up from `a` to `b`; none where one has no noise or no measured time.
     ///
     /// The error is that of the estimated variances, and of the clock.
-    pub(super) fn new(a: &Side, b: &Side) -> Option<Self> {
-        let cost = |side: &Side| {
-            let variance = side.variance_of_mean.filter(|&variance| variance > 0.0)?;
-            let relative_error = side.variance_error? / variance;
-            (side.cpu_seconds > 0.0).then_some((variance * side.cpu_seconds, relative_error))
-        };
-        let ((a, error_a), (b, error_b)) = (cost(a)?, cost(b)?);
+    pub fn new(a: &Side, b: &Side) -> Option<Self> {
+        let ((a, error_a), (b, error_b)) = (a.variance_times_time()?, b.variance_times_time()?);
         let log_error = error_a.hypot(error_b).hypot(TIMING_ERROR);
         let ratio = a / b;
         (ratio > 0.0 && ratio.is_finite()).then_some(Self { ratio, log_error })
@@ -56,6 +51,29 @@ impl SpeedUp {
         low > 1.0 || high < 1.0
     }
 
+    /// Whether so little is known that it is no tie either: it is too early to tell.
+    pub fn is_vague(&self) -> bool {
+        !self.is_clear() && self.factor() > TOO_WIDE
+    }
+
+    /// The time of the faster side as a share of the other's, with the digits that are known: 1/38,
+    /// about 75 %.
+    pub fn share(&self) -> String {
+        let factor = self.ratio.max(1.0 / self.ratio);
+        let spread = self.factor();
+        if factor < 2.0 {
+            return percents(factor, spread);
+        }
+        if spread <= 1.1 {
+            format!("1/{}", rounded(factor, 2))
+        } else if spread <= 1.6 {
+            format!("about 1/{}", rounded(round_number(factor), 2))
+        } else {
+            let [low, high] = [factor / spread, factor * spread].map(round_number);
+            format!("between 1/{} and 1/{}", rounded(high, 2), rounded(low, 2))
+        }
+    }
+
     /// By which factor the ends of the interval are off the ratio.
     fn factor(&self) -> f64 {
         (CONFIDENCE * self.log_error).exp()
@@ -67,10 +85,10 @@ pub(super) fn sentence(sides: &[Side; 2], speed_up: Option<&SpeedUp>) -> String 
     match speed_up {
         Some(speed_up) if speed_up.is_clear() => {
             let (winner, loser) = if speed_up.ratio > 1.0 { ("B", "A") } else { ("A", "B") };
-            let share = share_of_time(speed_up);
+            let share = speed_up.share();
             format!("{winner} needs {share} of {loser}'s time for the same noise")
         }
-        Some(speed_up) if speed_up.factor() > TOO_WIDE => {
+        Some(speed_up) if speed_up.is_vague() => {
             "It is too early to tell which of A and B is faster".to_owned()
         }
         Some(_) => "A and B are equally fast within what is known".to_owned(),
@@ -80,31 +98,13 @@ pub(super) fn sentence(sides: &[Side; 2], speed_up: Option<&SpeedUp>) -> String 
 
 /// Why there is nothing to say.
 fn unknown(sides: &[Side; 2]) -> String {
-    let is_noiseless = |side: &Side| side.variance_of_mean == Some(0.0);
-    match [0, 1].map(|side| is_noiseless(&sides[side])) {
+    match [0, 1].map(|side| sides[side].is_noiseless()) {
         [true, true] => "Neither A nor B shows any noise",
         [true, false] => "A shows no noise, so that times can't be compared",
         [false, true] => "B shows no noise, so that times can't be compared",
         [false, false] => "There are too few samples to compare A and B",
     }
     .to_owned()
-}
-
-/// The time of the faster side as a share of the other's.
-fn share_of_time(speed_up: &SpeedUp) -> String {
-    let factor = speed_up.ratio.max(1.0 / speed_up.ratio);
-    let spread = speed_up.factor();
-    if factor < 2.0 {
-        return percents(factor, spread);
-    }
-    if spread <= 1.1 {
-        format!("1/{}", rounded(factor, 2))
-    } else if spread <= 1.6 {
-        format!("about 1/{}", rounded(round_number(factor), 2))
-    } else {
-        let [low, high] = [factor / spread, factor * spread].map(round_number);
-        format!("between 1/{} and 1/{}", rounded(high, 2), rounded(low, 2))
-    }
 }
 
 /// A share of more than a half: 77 %, about 75 %, between 60 and 90 %.

@@ -4,22 +4,8 @@ use crate::scene::Settings;
 use crate::scene::settings::{
     Albedo, EmissionMode, MaterialKind, MaterialSettings, SurfaceSettings, VolumeSettings,
 };
-use crate::transport::strategy::{Distance, NeeEvaluation};
-
-/// A toggle of the strategy panel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Toggle {
-    /// `emission_decoupling`.
-    EmissionDecoupling,
-    /// `emission_ratio_tracking`.
-    EmissionRatioTracking,
-    /// `majorant_boost`.
-    MajorantBoost,
-    /// `nee`.
-    FireAsLight,
-    /// `probe_mis`.
-    Probes,
-}
+use crate::transport::strategy::{Distance, NeeEvaluation, Strategy};
+use crate::transport::toggle::Toggle;
 
 /// Why most toggles are idle with ray marching.
 const MARCHING: &str =
@@ -56,6 +42,15 @@ pub fn no_effect(toggle: Toggle, settings: &Settings) -> Option<&'static str> {
         }
         Toggle::FireAsLight | Toggle::Probes => None,
     }
+}
+
+/// [`no_effect`] if the scene had another strategy.
+pub fn no_effect_with(
+    toggle: Toggle,
+    settings: &Settings,
+    strategy: &Strategy,
+) -> Option<&'static str> {
+    no_effect(toggle, &Settings { strategy: *strategy, ..settings.clone() })
 }
 
 fn probes_without_effect(settings: &Settings) -> Option<&'static str> {

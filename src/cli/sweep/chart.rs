@@ -1,0 +1,36 @@
+//! The bar chart of a sweep.
+
+use std::path::Path;
+
+use crate::error::Result;
+use crate::image::bars::{self, Bar, Bars};
+use crate::render::sweep::words::{headline, relative_time};
+use crate::render::sweep::{Entry, Ranking, Source};
+
+/// Draws how many times as fast as the baseline each strategy is, the fastest first.
+///
+/// # Errors
+/// When the system refuses to write.
+pub fn write(path: &Path, ranking: &Ranking) -> Result<()> {
+    let texts: Vec<[String; 2]> =
+        ranking.entries.iter().map(|entry| [entry.trial.kind.title(), label(entry)]).collect();
+    let bar = |(number, entry): (usize, &Entry)| Bar {
+        name: &texts[number][0],
+        value: entry.over_baseline.map(|speed_up| (speed_up.ratio, speed_up.interval())),
+        label: &texts[number][1],
+        stands_out: ranking.leave_on == Some(number),
+    };
+    let bars: Vec<Bar<'_>> = ranking.entries.iter().enumerate().map(bar).collect();
+    let title = headline(ranking);
+    let axis = "Times as fast as baseline, with 95 % intervals; right: time for the same noise";
+    bars::write(path, &Bars { title: &title, axis, bars: &bars })
+}
+
+fn label(entry: &Entry) -> String {
+    match (entry.trial.source, &entry.over_baseline) {
+        (Source::Refused(_), _) => "not rendered".to_owned(),
+        (Source::SameAs { twin, .. }, _) => format!("as {}", twin.name()),
+        (Source::Rendered, Some(speed_up)) => relative_time(speed_up),
+        (Source::Rendered, None) => "not known".to_owned(),
+    }
+}

@@ -1,0 +1,185 @@
+//! Every toggle tried alone and left out, for a few seconds each: which strategy to leave on for a
+//! shot, what each toggle alone brings to it, and what is lost without it.
+//!
+//! [`plan()`] lists the trials, [`sweep`] renders them in turns on the same threads, [`Ranking`]
+//! holds them against each other as a comparison of two does, and [`words`] says what came out.
+//!
+//! Noise is measured on a film of few pixels: the mean variance of a pixel and the cost of a path
+//! depend on the shot and hardly on how finely it is cut, and a few seconds then bring each pixel
+//! the samples that its variance is known from.
+
+mod plan;
+mod ranking;
+pub mod words;
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use glam::UVec2;
+
+pub use plan::{Idle, Kind, Source, Trial, plan};
+pub use ranking::{Entry, Gain, Ranking, Worth};
+
+use super::compare::Side;
+use super::film::Totals;
+use super::in_turns::{Amount, FEWEST, RenderedSide, Turning, take_turns};
+use super::pool::{Failure, Pool};
+use super::turns::Account;
+use crate::error::{Error, Result};
+use crate::transport::probes::Probes;
+use crate::transport::strategy::Strategy;
+use crate::transport::{Frame, PixelSampler, Scene};
+
+/// CPU seconds of each strategy where nobody says how many.
+pub const DEFAULT_SECONDS: f64 = 3.0;
+
+/// Most pixels of a film whose size nobody asks for.
+const MOST_PIXELS: f32 = 8192.0;
+
+/// The size of a film that is quick to measure and shows the same as one of `size` pixels.
+pub fn quick_size(size: UVec2) -> UVec2 {
+    let pixels = size.x as f32 * size.y as f32;
+    let scale = (MOST_PIXELS / pixels.max(1.0)).sqrt().min(1.0);
+    (size.as_vec2() * scale).round().as_uvec2().max(UVec2::ONE)
+}
+
+/// What to try and for how long.
+pub struct SweepJob<'a> {
+    /// The scene, under whatever strategy.
+    pub scene: &'a Scene,
+    /// The strategies.
+    pub trials: &'a [Trial],
+    /// Width and height of the films in pixels.
+    pub size: UVec2,
+    /// Chooses the random numbers of all of them.
+    pub seed: u64,
+    /// How much is rendered of each.
+    pub amount: Amount,
+}
+
+/// How far a sweep is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Progress {
+    /// So many strategies of all have their probes and their pilot.
+    Preparing(usize, usize),
+    /// This part of the samples or of the time is spent, in 0..=1.
+    Rendering(f64),
+}
+
+/// What became of a strategy.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Tried {
+    /// Noise and cost.
+    pub side: Side,
+    /// Counts of what was done.
+    pub totals: Totals,
+}
+
+/// What became of all of them.
+pub struct Swept {
+    /// By trial; none of those that were not rendered.
+    pub tried: Vec<Option<Tried>>,
+    /// Whether the interrupt ended it.
+    pub interrupted: bool,
+    /// The number of the trial that ended it, and the sample that could not be taken.
+    pub failure: Option<(usize, Failure)>,
+}
+
+impl Swept {
+    /// Ranks the trials that it was made from.
+    pub fn ranking(&self, trials: &[Trial]) -> Ranking {
+        let sides: Vec<Option<Side>> =
+            self.tried.iter().map(|tried| tried.map(|tried| tried.side)).collect();
+        Ranking::new(trials, &sides)
+    }
+}
+
+/// Renders the trials on the threads of `pool` until each has its amount or `interrupt` is set,
+/// calling `progress` a few times a second. A sample that cannot be taken ends all.
+///
+/// # Errors
+/// When the films do not fit the memory, or the interrupt comes before anything is rendered.
+pub fn sweep(
+    job: &SweepJob<'_>,
+    pool: &Pool,
+    interrupt: &AtomicBool,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<Swept> {
+    let frames = prepare(job, pool, interrupt, progress)?;
+    let numbers: Vec<usize> = frames.iter().map(|(number, _)| *number).collect();
+    let begin = |(_, frame): (usize, Frame)| {
+        let sampler: Arc<dyn PixelSampler> = Arc::new(frame);
+        Turning::new(sampler, job.size, job.amount)
+    };
+    let mut sides = frames.into_iter().map(begin).collect::<Result<Vec<_>>>()?;
+    let interrupted = take_turns(&mut sides, pool, interrupt, &mut |accounts| {
+        let part = |account: &Account| job.amount.part(account);
+        let sum: f64 = accounts.iter().map(part).sum();
+        progress(Progress::Rendering(sum / accounts.len() as f64));
+    });
+    let mut swept = Swept { tried: vec![None; job.trials.len()], interrupted, failure: None };
+    for (number, side) in std::iter::zip(numbers, sides) {
+        let rendered = side.finish(pool);
+        let side = pool.install(|| measured(&rendered));
+        swept.tried[number] = Some(Tried { side, totals: rendered.film.totals });
+        swept.failure = swept.failure.or(rendered.failure.map(|failure| (number, failure)));
+    }
+    Ok(swept)
+}
+
+/// Noise and cost of a strategy; no noise where some pixels have none yet, as those that do are no
+/// fair part of the picture.
+fn measured(rendered: &RenderedSide) -> Side {
+    let side = Side::of(&rendered.film, rendered.cpu_seconds);
+    match side.fewest_samples < FEWEST {
+        true => Side { variance_of_mean: None, variance_error: None, noise: None, ..side },
+        false => side,
+    }
+}
+
+/// Frames the scene with every strategy that is to be rendered; their probes, placed once for all
+/// that have the same, and their pilots are then no part of the rendering.
+fn prepare(
+    job: &SweepJob<'_>,
+    pool: &Pool,
+    interrupt: &AtomicBool,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<Vec<(usize, Frame)>> {
+    let stop = || interrupt.load(Ordering::Relaxed);
+    let is_rendered = |(_, trial): &(usize, &Trial)| trial.source == Source::Rendered;
+    let rendered: Vec<(usize, &Trial)> =
+        job.trials.iter().enumerate().filter(is_rendered).collect();
+    let mut known: Vec<(Strategy, Arc<Probes>)> = Vec::new();
+    let mut frames = Vec::with_capacity(rendered.len());
+    for (done, (number, trial)) in rendered.iter().enumerate() {
+        progress(Progress::Preparing(done, rendered.len()));
+        let scene = Scene { strategy: trial.strategy, ..job.scene.clone() };
+        let probes = pool.install(|| probes(&scene, &mut known, &stop));
+        if stop() {
+            return Err(Error::Cancelled);
+        }
+        let frame = Frame::with_probes(Arc::new(scene), job.size, job.seed, probes);
+        pool.install(|| frame.guided_flights());
+        frames.push((*number, frame));
+    }
+    Ok(frames)
+}
+
+/// The probes of a scene, if its strategy asks for any: those of `known` that are the same, or new
+/// ones, which are known from then on.
+fn probes(
+    scene: &Scene,
+    known: &mut Vec<(Strategy, Arc<Probes>)>,
+    stop: &(dyn Fn() -> bool + Sync),
+) -> Option<Arc<Probes>> {
+    let recipe = Probes::recipe(&scene.strategy)?;
+    if let Some((_, probes)) = known.iter().find(|(other, _)| *other == recipe) {
+        return Some(probes.clone());
+    }
+    let probes = Arc::new(Probes::unless(scene, stop)?);
+    known.push((recipe, probes.clone()));
+    Some(probes)
+}
+
+#[cfg(test)]
+mod tests;

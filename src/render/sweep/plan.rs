@@ -1,0 +1,219 @@
+//! What a sweep tries: every toggle alone and left out, and which of that need not be rendered.
+
+use crate::transport::strategy::{Preset, Strategy};
+use crate::transport::toggle::Toggle;
+
+/// Why a toggle makes no difference to noise or cost beside the rest of a strategy; none where it
+/// does.
+pub type Idle<'a> = dyn Fn(Toggle, &Strategy) -> Option<&'static str> + 'a;
+
+/// Where a trial stands among the strategies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Every toggle off.
+    Baseline,
+    /// Every toggle on.
+    Full,
+    /// One toggle on.
+    Alone(Toggle),
+    /// One toggle off.
+    Without(Toggle),
+    /// As it is set, if that is none of the others.
+    AsSet,
+}
+
+impl Kind {
+    /// What it is called within a sentence.
+    pub fn name(self) -> String {
+        let lower = |toggle: Toggle| toggle.name().to_lowercase();
+        match self {
+            Self::Baseline => "baseline".to_owned(),
+            Self::Full => "full".to_owned(),
+            Self::Alone(toggle) => format!("{} alone", lower(toggle)),
+            Self::Without(toggle) => format!("full without {}", lower(toggle)),
+            Self::AsSet => "the toggles as set".to_owned(),
+        }
+    }
+
+    /// The same at the beginning of a line.
+    pub fn title(self) -> String {
+        let name = self.name();
+        let mut letters = name.chars();
+        letters
+            .next()
+            .map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+    }
+}
+
+/// How a trial comes by its figures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// By rendering.
+    Rendered,
+    /// From another trial that does the same in this scene.
+    SameAs {
+        /// That trial.
+        twin: Kind,
+        /// Why it does.
+        why: &'static str,
+    },
+    /// Not at all: the strategy cannot be rendered.
+    Refused(&'static str),
+}
+
+/// A strategy to try.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Trial {
+    /// Where it stands.
+    pub kind: Kind,
+    /// What is on.
+    pub strategy: Strategy,
+    /// How it comes by its figures.
+    pub source: Source,
+}
+
+/// The trials of a sweep around `strategy`, whose integrator and finer choices all of them share.
+/// What `idle` says to change nothing is not rendered twice.
+pub fn plan(strategy: &Strategy, idle: &Idle<'_>) -> Vec<Trial> {
+    let [baseline, full] =
+        [Preset::Baseline, Preset::Full].map(|preset| strategy.with_toggles_of(preset));
+    let mut wanted = vec![(Kind::Baseline, baseline), (Kind::Full, full)];
+    wanted.extend(Toggle::ALL.map(|toggle| (Kind::Alone(toggle), toggle.set(&baseline, true))));
+    wanted.extend(Toggle::ALL.map(|toggle| (Kind::Without(toggle), toggle.set(&full, false))));
+    if wanted.iter().all(|(_, other)| other != strategy) {
+        wanted.push((Kind::AsSet, *strategy));
+    }
+    let mut trials = Vec::with_capacity(wanted.len());
+    for (kind, strategy) in wanted {
+        let source = source(&trials, &strategy, idle);
+        trials.push(Trial { kind, strategy, source });
+    }
+    trials
+}
+
+fn source(earlier: &[Trial], strategy: &Strategy, idle: &Idle<'_>) -> Source {
+    if let Some(reason) = strategy.tracker_refusal() {
+        return Source::Refused(reason);
+    }
+    let effective = effective(strategy, idle);
+    let is_twin = |trial: &Trial| {
+        trial.source == Source::Rendered && self::effective(&trial.strategy, idle) == effective
+    };
+    match earlier.iter().find(|trial| is_twin(trial)) {
+        Some(Trial { kind, strategy: other, .. }) => {
+            Source::SameAs { twin: *kind, why: why(other, strategy, idle) }
+        }
+        None => Source::Rendered,
+    }
+}
+
+/// `strategy` with those toggles off that change nothing beside the others.
+fn effective(strategy: &Strategy, idle: &Idle<'_>) -> Strategy {
+    let idle_toggles = Toggle::ALL.into_iter().filter(|toggle| idle(*toggle, strategy).is_some());
+    idle_toggles.fold(*strategy, |effective, toggle| toggle.set(&effective, false))
+}
+
+/// Why two strategies do the same: what makes the toggle idle in which they differ.
+fn why(a: &Strategy, b: &Strategy, idle: &Idle<'_>) -> &'static str {
+    let differing = Toggle::ALL.into_iter().filter(|toggle| toggle.is_on(a) != toggle.is_on(b));
+    let reason = |toggle: Toggle| {
+        let on = if toggle.is_on(a) { a } else { b };
+        idle(toggle, on)
+    };
+    differing.into_iter().find_map(reason).unwrap_or("nothing that they differ in matters here.")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::transport::strategy::Tracker;
+
+    const SUBSUMED: &str = "ratio tracking collects it";
+    const DARK: &str = "nothing glows";
+
+    fn subsumed(toggle: Toggle, strategy: &Strategy) -> Option<&'static str> {
+        let idle = toggle == Toggle::EmissionDecoupling && strategy.emission_ratio_tracking;
+        idle.then_some(SUBSUMED)
+    }
+
+    fn find(trials: &[Trial], kind: Kind) -> &Trial {
+        trials.iter().find(|trial| trial.kind == kind).unwrap()
+    }
+
+    #[test]
+    fn every_toggle_is_tried_alone_and_left_out() {
+        let set = Strategy::default();
+        let trials = plan(&set, &|_, _| None);
+        assert_eq!(trials.len(), 12);
+        assert!(trials.iter().all(|trial| trial.source == Source::Rendered));
+        for toggle in Toggle::ALL {
+            let on = |kind| {
+                let strategy = find(&trials, kind).strategy;
+                Toggle::ALL.into_iter().filter(|toggle| toggle.is_on(&strategy)).collect::<Vec<_>>()
+            };
+            assert_eq!(on(Kind::Alone(toggle)), [toggle]);
+            let left = on(Kind::Without(toggle));
+            assert!(left.len() == 4 && !left.contains(&toggle));
+        }
+    }
+
+    #[test]
+    fn what_is_set_is_tried_too_and_its_finer_choices_are_everywhere() {
+        let mut set = Toggle::Probes.set(&Preset::Baseline.strategy(), true);
+        set.advanced.boost_amount = 7.0;
+        assert_eq!(plan(&set, &|_, _| None).len(), 12);
+        set.nee = true;
+        let trials = plan(&set, &|_, _| None);
+        assert_eq!((trials.len(), find(&trials, Kind::AsSet).strategy), (13, set));
+        assert!(trials.iter().all(|trial| trial.strategy.advanced == set.advanced));
+    }
+
+    #[test]
+    fn what_changes_nothing_is_rendered_once() {
+        let trials = plan(&Strategy::default(), &subsumed);
+        let toggle = Toggle::EmissionDecoupling;
+        let twin = find(&trials, Kind::Without(toggle)).source;
+        assert_eq!(twin, Source::SameAs { twin: Kind::Full, why: SUBSUMED });
+        assert_eq!(find(&trials, Kind::Alone(toggle)).source, Source::Rendered);
+
+        // Smoke that does not glow leaves one strategy and the baseline.
+        let dark = |toggle, _: &Strategy| (toggle != Toggle::Probes).then_some(DARK);
+        let trials = plan(&Strategy::default(), &dark);
+        let rendered = trials.iter().filter(|trial| trial.source == Source::Rendered);
+        assert_eq!(
+            rendered.map(|trial| trial.kind).collect::<Vec<_>>(),
+            [Kind::Baseline, Kind::Full]
+        );
+        let twin = |kind| find(&trials, kind).source;
+        assert_eq!(
+            twin(Kind::Alone(Toggle::Probes)),
+            Source::SameAs { twin: Kind::Full, why: DARK }
+        );
+        assert_eq!(
+            twin(Kind::Without(Toggle::Probes)),
+            Source::SameAs { twin: Kind::Baseline, why: DARK }
+        );
+        assert_eq!(
+            twin(Kind::Alone(Toggle::FireAsLight)),
+            Source::SameAs { twin: Kind::Baseline, why: DARK }
+        );
+    }
+
+    #[test]
+    fn what_cannot_be_rendered_says_why() {
+        let mut set = Preset::Emission.strategy();
+        set.advanced.tracker = Tracker::Decomposition;
+        let trials = plan(&set, &|_, _| None);
+        let refused = |kind| matches!(find(&trials, kind).source, Source::Refused(_));
+        assert!(refused(Kind::Baseline) && refused(Kind::Full));
+        assert!(!refused(Kind::Without(Toggle::Probes)));
+    }
+
+    #[test]
+    fn names_fit_into_sentences() {
+        let kind = Kind::Without(Toggle::MajorantBoost);
+        assert_eq!(kind.name(), "full without majorant boost");
+        assert_eq!(kind.title(), "Full without majorant boost");
+        assert_eq!(Kind::Alone(Toggle::FireAsLight).title(), "Fire as a light alone");
+    }
+}

@@ -1,0 +1,182 @@
+//! The figures of a sweep: which strategy needs least time for the same noise, and how well that
+//! is known.
+
+use super::plan::{Kind, Source, Trial};
+use crate::render::compare::{Side, SpeedUp};
+use crate::transport::toggle::Toggle;
+
+/// A trial with its figures.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Entry {
+    /// What was tried.
+    pub trial: Trial,
+    /// Noise and cost: its own, or those of the trial that does the same; none where it could not
+    /// be rendered.
+    pub side: Option<Side>,
+    /// How much faster it is than the baseline; none while that is not known at all.
+    pub over_baseline: Option<SpeedUp>,
+    /// How much faster it is than the best, so at most 1.
+    pub over_best: Option<SpeedUp>,
+}
+
+/// What a toggle brings to a shot.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Worth {
+    /// The toggle.
+    pub toggle: Toggle,
+    /// How much faster it is alone than the baseline.
+    pub alone: Gain,
+    /// How much faster everything is without it, so below 1 where it helps.
+    pub left_out: Gain,
+}
+
+/// What a toggle brings to the rest of a strategy.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Gain {
+    /// So much faster for the same noise.
+    Of(SpeedUp),
+    /// Nothing, and why.
+    Nothing(&'static str),
+    /// It is not known.
+    Unknown,
+}
+
+/// The result of a sweep.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ranking {
+    /// The trials, the fastest first and what does the same behind its twin; last those of which
+    /// nothing is known.
+    pub entries: Vec<Entry>,
+    /// The number of the entry to leave on; none while something is not known yet.
+    pub leave_on: Option<usize>,
+    /// What each toggle brings, in the order of the strategy.
+    pub worths: Vec<Worth>,
+}
+
+/// The same film against itself.
+const SAME: SpeedUp = SpeedUp { ratio: 1.0, log_error: 0.0 };
+
+impl Ranking {
+    /// Ranks `trials` by the figures of those that were rendered.
+    pub fn new(trials: &[Trial], sides: &[Option<Side>]) -> Self {
+        let all = Figures { trials, sides };
+        let known = (0..trials.len()).filter(|&number| all.cost(number).is_some());
+        let by_cost = |a: &usize, b: &usize| all.key(*a).total_cmp(&all.key(*b));
+        let best = known.clone().min_by(by_cost);
+        let mut order: Vec<usize> = (0..trials.len()).collect();
+        // Sorting is stable, and a twin comes behind the trial that was rendered for both.
+        order.sort_by(by_cost);
+        let entry = |&number: &usize| Entry {
+            trial: trials[number],
+            side: all.side(number),
+            over_baseline: all.speed_up(all.find(Kind::Baseline), Some(number)),
+            over_best: all.speed_up(best, Some(number)),
+        };
+        let entries: Vec<Entry> = order.iter().map(entry).collect();
+        // What is not known yet may be the best of all.
+        let all_known = entries.iter().all(|entry| entry.is_known() || !entry.is_rendered());
+        let leave_on = best.filter(|_| all_known).map(|_| leave_on(&entries));
+        Self { entries, leave_on, worths: Toggle::ALL.map(|toggle| all.worth(toggle)).to_vec() }
+    }
+
+    /// The entry to leave on.
+    pub fn best(&self) -> Option<&Entry> {
+        self.leave_on.and_then(|number| self.entries.get(number))
+    }
+}
+
+/// Everything on, where nothing is known to be faster, and else what is.
+fn leave_on(entries: &[Entry]) -> usize {
+    let is_it = |entry: &Entry| entry.trial.kind == Kind::Full && entry.is_as_good_as_best();
+    entries.iter().position(is_it).unwrap_or(0)
+}
+
+impl Entry {
+    /// Whether no difference from the best is known, although one as large as a half would be.
+    pub fn is_as_good_as_best(&self) -> bool {
+        self.over_best.is_some_and(|speed_up| !speed_up.is_clear() && !speed_up.is_vague())
+    }
+
+    /// Whether so little is known that it may well be the best or far from it.
+    pub fn is_vague(&self) -> bool {
+        self.over_best.is_some_and(|speed_up| speed_up.is_vague())
+    }
+
+    /// Whether its noise and its cost are known.
+    fn is_known(&self) -> bool {
+        self.side.is_some_and(|side| side.is_noiseless() || side.variance_times_time().is_some())
+    }
+
+    /// Whether it was rendered itself.
+    pub fn is_rendered(&self) -> bool {
+        self.trial.source == Source::Rendered
+    }
+}
+
+/// Figures by the numbers of their trials.
+struct Figures<'a> {
+    trials: &'a [Trial],
+    sides: &'a [Option<Side>],
+}
+
+impl Figures<'_> {
+    /// The trial that was rendered for this one.
+    fn rendered(&self, number: usize) -> usize {
+        match self.trials[number].source {
+            Source::SameAs { twin, .. } => self.find(twin).unwrap_or(number),
+            _ => number,
+        }
+    }
+
+    fn side(&self, number: usize) -> Option<Side> {
+        self.sides.get(self.rendered(number)).copied().flatten()
+    }
+
+    /// Variance times time; 0 where there is no noise.
+    fn cost(&self, number: usize) -> Option<f64> {
+        let side = self.side(number)?;
+        match side.is_noiseless() {
+            true => Some(0.0),
+            false => side.variance_times_time().map(|(cost, _)| cost),
+        }
+    }
+
+    /// What is sorted by.
+    fn key(&self, number: usize) -> f64 {
+        self.cost(number).unwrap_or(f64::INFINITY)
+    }
+
+    fn find(&self, kind: Kind) -> Option<usize> {
+        self.trials.iter().position(|trial| trial.kind == kind)
+    }
+
+    /// From one trial to another, if both have figures.
+    fn speed_up(&self, from: Option<usize>, to: Option<usize>) -> Option<SpeedUp> {
+        let (from, to) = (from?, to?);
+        let speed_up = SpeedUp::new(&self.side(from)?, &self.side(to)?)?;
+        Some(if self.rendered(from) == self.rendered(to) { SAME } else { speed_up })
+    }
+
+    fn worth(&self, toggle: Toggle) -> Worth {
+        let gain = |from, to| self.gain(self.find(from), self.find(to));
+        Worth {
+            toggle,
+            alone: gain(Kind::Baseline, Kind::Alone(toggle)),
+            left_out: gain(Kind::Full, Kind::Without(toggle)),
+        }
+    }
+
+    /// What it brings to go from one trial to another.
+    fn gain(&self, from: Option<usize>, to: Option<usize>) -> Gain {
+        let (Some(from), Some(to)) = (from, to) else { return Gain::Unknown };
+        match self.trials[to].source {
+            Source::SameAs { why, .. } if self.rendered(to) == self.rendered(from) => {
+                Gain::Nothing(why)
+            }
+            _ => self.speed_up(Some(from), Some(to)).map_or(Gain::Unknown, Gain::Of),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

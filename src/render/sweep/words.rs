@@ -1,0 +1,137 @@
+//! What a sweep found, in words.
+
+use super::plan::Source;
+use super::ranking::{Entry, Gain, Ranking, Worth};
+use crate::image::figures::{percent, rounded};
+use crate::render::compare::SpeedUp;
+
+/// Names in a row before the rest is counted.
+const MOST_NAMES: usize = 4;
+
+/// Which strategy to leave on and what that brings, without a full stop.
+pub fn headline(ranking: &Ranking) -> String {
+    let Some(best) = ranking.best() else {
+        return "There are too few samples to rank the strategies; give each more time".to_owned();
+    };
+    if ranking.entries.iter().filter(|entry| entry.is_rendered()).count() == 1 {
+        return "No toggle changes anything in this shot".to_owned();
+    }
+    let name = best.trial.kind.name();
+    match &best.over_baseline {
+        _ if best.side.is_some_and(|side| side.is_noiseless()) => {
+            format!("Leave on {name}: no noise")
+        }
+        None => format!("Leave on {name}: the fastest; baseline can't be compared with it"),
+        Some(speed_up) if speed_up.is_clear() => {
+            let share = speed_up.share();
+            format!("Leave on {name}: {share} of baseline's time for the same noise")
+        }
+        Some(_) if ranking.entries.iter().any(Entry::is_vague) => {
+            "It is too early to tell whether any strategy is faster than baseline; give each more \
+             time"
+                .to_owned()
+        }
+        Some(_) => "No strategy is faster than baseline within what is known".to_owned(),
+    }
+}
+
+/// Which others can't be told from it, what each toggle brings alone and what is lost without it,
+/// one sentence each without a full stop.
+pub fn remarks(ranking: &Ranking) -> Vec<String> {
+    let mut remarks = not_told_apart(ranking);
+    remarks.extend(brought_alone(ranking));
+    remarks.extend(lost(ranking));
+    remarks
+}
+
+/// Which toggles bring something on their own; nothing where that is not known of any.
+fn brought_alone(ranking: &Ranking) -> Option<String> {
+    let known = gains(ranking, |worth| worth.alone)?;
+    let mut faster: Vec<_> = known.into_iter().filter(|(_, it)| it.ratio > 1.0).collect();
+    faster.sort_by(|(_, a), (_, b)| b.ratio.total_cmp(&a.ratio));
+    let named = |(name, it): &(String, SpeedUp)| format!("{name} ({} of its time)", it.share());
+    let names: Vec<String> = faster.iter().map(named).collect();
+    Some(match names.is_empty() {
+        true => "Alone, no toggle is faster than baseline within what is known".to_owned(),
+        false => format!("Alone, these are faster than baseline: {}", listed(&names)),
+    })
+}
+
+/// Which toggles full is slower without.
+fn lost(ranking: &Ranking) -> Option<String> {
+    let known = gains(ranking, |worth| worth.left_out)?;
+    let mut slower: Vec<_> = known.into_iter().filter(|(_, it)| it.ratio < 1.0).collect();
+    slower.sort_by(|(_, a), (_, b)| a.ratio.total_cmp(&b.ratio));
+    let named = |(name, it): &(String, SpeedUp)| {
+        format!("{name} ({} times as long)", rounded(1.0 / it.ratio, 2))
+    };
+    let names: Vec<String> = slower.iter().map(named).collect();
+    Some(match names.is_empty() {
+        true => "Full takes no longer without any one toggle within what is known".to_owned(),
+        false => format!("Full takes longer without {}", listed(&names)),
+    })
+}
+
+/// Toggles by name whose gain is clear; none where no gain is known at all.
+fn gains(ranking: &Ranking, gain: fn(&Worth) -> Gain) -> Option<Vec<(String, SpeedUp)>> {
+    let known = ranking.worths.iter().filter_map(|worth| match gain(worth) {
+        Gain::Of(speed_up) => Some((worth.toggle.name().to_lowercase(), speed_up)),
+        Gain::Nothing(_) | Gain::Unknown => None,
+    });
+    let known: Vec<_> = known.collect();
+    let clear = |(_, speed_up): &(String, SpeedUp)| speed_up.is_clear();
+    (!known.is_empty()).then(|| known.into_iter().filter(clear).collect())
+}
+
+/// Which strategies can't be told from the one to leave on.
+fn not_told_apart(ranking: &Ranking) -> Vec<String> {
+    let names = |is_meant: fn(&Entry) -> bool| {
+        let others = ranking.entries.iter().enumerate().filter(|(number, entry)| {
+            Some(*number) != ranking.leave_on && entry.is_rendered() && is_meant(entry)
+        });
+        others.map(|(_, entry)| entry.trial.kind.name()).collect::<Vec<_>>()
+    };
+    let groups = [
+        ("As good within what is known", names(Entry::is_as_good_as_best)),
+        ("Too early to tell from it", names(Entry::is_vague)),
+    ];
+    let told = groups.into_iter().filter(|(_, names)| !names.is_empty());
+    told.map(|(what, names)| format!("{what}: {}", listed(&names))).collect()
+}
+
+/// Names as a sentence lists them.
+fn listed(names: &[String]) -> String {
+    match names {
+        [] => String::new(),
+        [only] => only.clone(),
+        [first @ .., last] if names.len() <= MOST_NAMES => {
+            format!("{} and {last}", first.join(", "))
+        }
+        _ => {
+            let rest = names.len() - (MOST_NAMES - 1);
+            format!("{} and {rest} more", names[..MOST_NAMES - 1].join(", "))
+        }
+    }
+}
+
+/// The time for the same noise relative to what `speed_up` is over, with its standard error.
+pub fn relative_time(speed_up: &SpeedUp) -> String {
+    let ratio = speed_up.ratio;
+    let time = match ratio >= 2.0 {
+        true => format!("1/{}", rounded(ratio, 2)),
+        false => rounded(1.0 / ratio, 2),
+    };
+    match speed_up.log_error > 0.0 {
+        true => format!("{time} ± {}", percent(speed_up.log_error)),
+        false => time,
+    }
+}
+
+/// Why an entry has no figures of its own; none where it has.
+pub fn note(entry: &Entry) -> Option<String> {
+    match entry.trial.source {
+        Source::Rendered => None,
+        Source::SameAs { twin, why } => Some(format!("same as {}: {why}", twin.name())),
+        Source::Refused(why) => Some(format!("cannot be rendered: {why}")),
+    }
+}
