@@ -27,7 +27,7 @@ use super::state::{Compared, Editor};
 use super::theme;
 use super::viewport::Viewport;
 use crate::error::Result;
-use crate::scene::DEFAULT_SCENE;
+use crate::scene::{DEFAULT_SCENE, Note};
 
 /// How the window is set up.
 #[derive(Clone, Debug, Default)]
@@ -63,7 +63,7 @@ pub struct App {
     /// What is open, as the user named it.
     source: String,
     /// What was guessed when it was opened.
-    notes: Vec<String>,
+    notes: Vec<Note>,
     folded: bool,
     help: bool,
     largest: u32,

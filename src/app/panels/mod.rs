@@ -23,6 +23,7 @@ use super::duel::Duel;
 use super::loader::Grids;
 use super::state::Editor;
 use super::theme::color;
+use crate::scene::Note;
 
 /// What a panel may read and change.
 pub struct Panel<'a> {
@@ -30,8 +31,8 @@ pub struct Panel<'a> {
     pub editor: &'a mut Editor,
     /// The grids of all files seen so far.
     pub grids: &'a Grids,
-    /// What was guessed when a bare volume was opened, one a line.
-    pub notes: &'a [String],
+    /// What was guessed when a bare volume was opened.
+    pub notes: &'a [Note],
     /// How often probes are asked in the picture, relative to what they propose, if that is known.
     pub guided_flights: Option<f32>,
     /// The other side of a comparison.

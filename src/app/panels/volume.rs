@@ -19,7 +19,7 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
             ui.weak("There is no volume in this scene.");
         }
         for note in panel.notes {
-            explain(ui, note);
+            explain(ui, &note.to_string());
         }
         for index in 0..volumes {
             let title = title(&panel.editor.document.settings.volume[index], index);
