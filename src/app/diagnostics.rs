@@ -100,7 +100,7 @@ impl Diagnostics {
 }
 
 /// Where a picture position, in its pixels, lies in the window.
-fn to_window(view: &View, at: glam::Vec2) -> egui::Pos2 {
+pub(super) fn to_window(view: &View, at: glam::Vec2) -> egui::Pos2 {
     let at = (view.placement.corner + at * view.placement.scale) / view.factor;
     view.rect.min + egui::vec2(at.x, at.y)
 }

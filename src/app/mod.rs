@@ -4,6 +4,7 @@
 //! - `state`, `history`: what is edited, and undo; `commands`: everything that can be asked for.
 //! - `engine`, `loader`, `prober`: from edits to pictures, without ever blocking the window.
 //! - `viewport`, `navigation`, `zoom`, `display`: the picture and the hand on it.
+//! - `gizmo`: handles over the picture that move a light; `stops`: those of a color ramp.
 //! - `duel`: two strategies on one scene, side by side.
 //! - `diagnostics`: cells over the picture and maps in its place, to understand a render.
 //! - `panels`, `widgets`, `notices`, `theme`: what is around it.
@@ -20,6 +21,7 @@ mod effect;
 mod engine;
 mod files;
 mod frame_stats;
+mod gizmo;
 mod history;
 mod loader;
 mod navigation;
@@ -30,6 +32,7 @@ mod reopen;
 mod saver;
 mod snapshots;
 mod state;
+mod stops;
 mod theme;
 mod up_axis;
 mod viewport;

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use egui::{Context, Ui};
-use glam::UVec2;
+use glam::{UVec2, Vec3A};
 
 use super::commands::Command;
 use super::diagnostics::Diagnostics;
@@ -19,6 +19,7 @@ use super::duel::Duel;
 use super::engine::{Engine, News};
 use super::files::{Answer, Dialog, Dialogs, Purpose};
 use super::frame_stats::FrameStats;
+use super::gizmo::Gizmo;
 use super::notices::{Level, Notice, Notices};
 use super::panels::bars::PathBar;
 use super::saver::Saver;
@@ -27,6 +28,7 @@ use super::state::{Compared, Editor};
 use super::theme;
 use super::viewport::Viewport;
 use crate::error::Result;
+use crate::math::Aabb;
 use crate::scene::{DEFAULT_SCENE, Note};
 
 /// How the window is set up.
@@ -52,6 +54,7 @@ pub struct App {
     duel: Duel,
     viewport: Viewport,
     diagnostics: Diagnostics,
+    gizmo: Gizmo,
     notices: Notices,
     saver: Saver,
     dialogs: Dialogs,
@@ -92,6 +95,7 @@ impl App {
             duel: Duel::new(options.threads),
             viewport: Viewport::default(),
             diagnostics: Diagnostics::default(),
+            gizmo: Gizmo::default(),
             notices: Notices::default(),
             saver: Saver::default(),
             dialogs: options.dialogs,
@@ -170,6 +174,7 @@ impl App {
             match item {
                 News::Opened { source, settings, notes, reopened } => {
                     self.notes = notes;
+                    self.gizmo = Gizmo::default();
                     self.editor.open(*settings, reopened.is_some());
                     self.viewport.zoom = Default::default();
                     self.notices = Notices::default();
@@ -257,6 +262,15 @@ impl App {
             return Some(size.clamp(UVec2::ONE, UVec2::splat(self.largest)));
         }
         self.viewport.film_size()
+    }
+
+    /// The box around all that fills space, or around the camera's target where nothing does.
+    fn subject_bounds(&self) -> Aabb {
+        let camera = &self.editor.document.settings.camera;
+        let target = Vec3A::from(camera.target);
+        let around = Vec3A::splat(0.25 * target.distance(camera.position.into()).max(1e-3));
+        let filled = self.engine.built().and_then(|built| built.scene.world.finite_bounds());
+        filled.unwrap_or_else(|| Aabb::new(target - around, target + around))
     }
 
     fn note_start(&mut self, generation: u64) {

@@ -58,6 +58,11 @@ impl Role {
         }
     }
 
+    /// What a grid is for that a mode of emission reads; `None` if it reads none.
+    pub fn of_mode(mode: EmissionMode) -> Option<Self> {
+        Self::ALL.into_iter().find(|role| role.mode() == Some(mode))
+    }
+
     fn mode(self) -> Option<EmissionMode> {
         match self {
             Self::Density => None,

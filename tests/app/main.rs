@@ -4,7 +4,11 @@
 //! `FLAMBEAU_REQUIRE_WINDOW_TESTS=1` says that there has to be one.
 
 mod compare;
+mod film;
+mod lights;
 mod snapshots;
+mod surfaces;
+mod volume_panel;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

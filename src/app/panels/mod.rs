@@ -7,12 +7,17 @@ pub mod compare;
 pub mod diagnostics;
 pub mod emission;
 pub mod film;
+pub mod grids;
 pub mod help;
+pub mod lights;
 pub mod menu;
 pub mod noise_plot;
+pub mod placement;
+pub mod ramp;
 pub mod status;
 pub mod strategy;
 pub mod strip;
+pub mod surfaces;
 pub mod volume;
 
 use egui::{CollapsingHeader, RichText, Ui};
@@ -23,6 +28,7 @@ use super::duel::Duel;
 use super::loader::Grids;
 use super::state::Editor;
 use super::theme::color;
+use crate::math::Aabb;
 use crate::scene::Note;
 
 /// What a panel may read and change.
@@ -33,6 +39,10 @@ pub struct Panel<'a> {
     pub grids: &'a Grids,
     /// What was guessed when a bare volume was opened.
     pub notes: &'a [Note],
+    /// The box around all that fills space, or around the camera's target where nothing does.
+    pub bounds: Aabb,
+    /// The light whose keys and handles are shown.
+    pub selected_light: &'a mut Option<usize>,
     /// How often probes are asked in the picture, relative to what they propose, if that is known.
     pub guided_flights: Option<f32>,
     /// The other side of a comparison.

@@ -23,10 +23,13 @@ impl App {
         let plain = self.panel_frame();
         let grids = self.engine.grids().clone();
         let edited = self.duel.edited(&self.engine);
+        let bounds = self.subject_bounds();
         let mut panel = Panel {
             editor: &mut self.editor,
             grids: &grids,
             notes: &self.notes,
+            bounds,
+            selected_light: &mut self.gizmo.selected,
             guided_flights: edited.picture().and_then(|picture| picture.stats.guided_flights),
             duel: &self.duel,
             wanted: &mut self.diagnostics.wanted,
@@ -85,6 +88,10 @@ impl App {
             if let (Some(view), Some(picture)) = (view, &picture) {
                 let map = self.duel.map().map(|map| Legend::of_map(map.kind, map.key));
                 self.diagnostics.show(ui, view, picture, &self.editor.document.settings, map);
+            }
+            if let Some(view) = view.filter(|_| self.duel.map().is_none()) {
+                let pivot = self.subject_bounds().center();
+                self.gizmo.show(ui, view, &mut self.editor, pivot);
             }
             self.compare_marks(ui, rect);
         });
@@ -155,6 +162,8 @@ fn column(ui: &mut Ui, panel: &mut Panel<'_>, frame: Frame, film: Option<UVec2>,
             inner.show(ui, |ui| {
                 panels::strategy::show(ui, panel);
                 panels::volume::show(ui, panel);
+                panels::lights::show(ui, panel);
+                panels::surfaces::show(ui, panel);
                 panels::camera::show(ui, panel);
                 panels::film::show(ui, panel, film, largest);
                 panels::diagnostics::show(ui, panel.wanted);
