@@ -5,7 +5,7 @@ mod drag;
 mod figure;
 mod lens;
 
-use egui::{Color32, CursorIcon, Pos2, Rect, Sense, Stroke, Ui, vec2};
+use egui::{Color32, CursorIcon, Pos2, Rect, Response, Sense, Stroke, Ui, vec2};
 use glam::Vec3A;
 
 use super::state::Editor;
@@ -51,46 +51,50 @@ impl Gizmo {
         };
         let lens = Lens { camera, view };
         let handles = Figure::of(light, &lens, pivot).handles_on(&lens);
-        let responses: Vec<_> = handles
-            .iter()
-            .map(|(handle, at)| {
-                let rect = Rect::from_center_size(*at, vec2(2.0 * REACH, 2.0 * REACH));
-                let rect = rect.intersect(view.rect);
-                let id = ui.scope_id().with(("light handle", *handle));
-                let response = ui.interact(rect, id, Sense::click_and_drag());
-                let name = handle.name();
-                response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, name));
-                response
-            })
-            .collect();
-        if responses.iter().any(egui::Response::drag_started) {
+        let responses: Vec<Response> =
+            handles.iter().map(|(handle, at)| sense(ui, view, *handle, *at)).collect();
+        if responses.iter().any(Response::drag_started) {
             let origin = ui.input(|input| input.pointer.press_origin());
-            self.grip = origin.and_then(|from| {
-                let handle = figure::nearest(&handles, from, 2.0 * REACH)?;
-                Some(Grip { handle, light: light.clone(), from })
-            });
+            self.grip = origin.and_then(|from| Grip::at(from, &handles, light));
         }
         let held = responses.iter().find(|response| response.dragged());
-        match (&self.grip, held.and_then(egui::Response::interact_pointer_pos)) {
-            (Some(grip), Some(to)) => {
-                let moved = drag::dragged(&grip.light, grip.handle, &lens, pivot, [grip.from, to]);
-                if *light != moved {
-                    *light = moved;
-                    editor.name_edit(grip.handle.edit());
-                }
-            }
-            _ => self.grip = None,
+        let to = held.and_then(Response::interact_pointer_pos);
+        self.grip = self.grip.take().filter(|_| to.is_some());
+        let mut edit = None;
+        if let (Some(Grip { handle, light: before, from }), Some(to)) = (&self.grip, to) {
+            let moved = drag::dragged(before, *handle, &lens, pivot, [*from, to]);
+            edit = (*light != moved).then(|| handle.edit());
+            *light = moved;
         }
-        let hovered = responses.iter().position(|response| response.hovered());
-        let lit = self.grip.as_ref().map(|grip| grip.handle);
-        let lit = lit.or_else(|| handles.get(hovered?).map(|(handle, _)| *handle));
+        let hovered = responses.iter().position(Response::hovered);
+        let hovered = hovered.and_then(|index| handles.get(index)).map(|(handle, _)| *handle);
+        let lit = self.grip.as_ref().map(|grip| grip.handle).or(hovered);
         if lit.is_some() {
             ui.set_cursor_icon(CursorIcon::Move);
         }
-        if let Some(light) = self.selected.and_then(|at| editor.document.settings.light.get(at)) {
-            paint(ui, &lens, &Figure::of(light, &lens, pivot), lit);
+        paint(ui, &lens, &Figure::of(light, &lens, pivot), lit);
+        if let Some(name) = edit {
+            editor.name_edit(name);
         }
     }
+}
+
+impl Grip {
+    /// Takes hold of the handle that a press at `from` meant.
+    fn at(from: Pos2, handles: &[(Handle, Pos2)], light: &LightSettings) -> Option<Self> {
+        let handle = figure::nearest(handles, from, 2.0 * REACH)?;
+        Some(Self { handle, light: light.clone(), from })
+    }
+}
+
+/// The place of a handle as something to take hold of. It lies above the picture, which therefore
+/// does not orbit.
+fn sense(ui: &Ui, view: View, handle: Handle, at: Pos2) -> Response {
+    let rect = Rect::from_center_size(at, vec2(2.0 * REACH, 2.0 * REACH)).intersect(view.rect);
+    let id = ui.scope_id().with(("light handle", handle));
+    let response = ui.interact(rect, id, Sense::click_and_drag());
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Button, true, handle.name()));
+    response.on_hover_text(handle.help())
 }
 
 /// Draws lines and handles, each on a dark ground, so that they show on any picture.

@@ -4,18 +4,19 @@ use glam::Vec3A;
 
 use super::guess::two_digits;
 use super::settings::{
-    Color, Extent, LightKind, LightSettings, MaterialSettings, SurfaceSettings, SurfaceShape,
+    CameraSettings, Color, Extent, LightKind, LightSettings, MaterialSettings, SurfaceSettings,
+    SurfaceShape,
 };
 use crate::math::Aabb;
 
-/// The irradiance that a new light brings to the middle of the shot.
+/// The irradiance that a new light brings to the middle of the picture.
 const IRRADIANCE: f32 = 3.0;
-/// Where a new lamp stands, in sizes of what it lights, from its middle: above, on the left and
-/// towards the default camera.
-const LAMP: Vec3A = Vec3A::new(-0.8, -0.8, 1.0);
-/// Radius of a new ball and half the edge of a new quad, in sizes of what they light.
-const BALL: f32 = 0.1;
-const QUAD: f32 = 0.25;
+/// Where a new lamp stands, from the camera's target to the right, up and towards the camera, in
+/// half widths of the picture there: within the picture, so that the hand can take hold of it.
+const LAMP: Vec3A = Vec3A::new(-0.45, 0.3, 0.8);
+/// Radius of a new ball and half the edge of a new quad, in the same measure.
+const BALL: f32 = 0.12;
+const QUAD: f32 = 0.3;
 /// Half the edge of a floor, in sizes of what stands on it.
 const FLOOR: f32 = 20.0;
 /// How far below its volume a floor lies, in heights of the volume, so that nothing flickers
@@ -24,11 +25,16 @@ const GAP: f32 = 1e-3;
 /// The color of a new floor.
 const FLOOR_REFLECTANCE: f32 = 0.4;
 
-/// A light of that kind for what fills `bounds`.
-pub fn new_light(kind: LightKind, bounds: &Aabb) -> LightSettings {
-    let size = bounds.size().max_element();
-    let center = bounds.center();
-    let position = rounded(center + LAMP * size, size);
+/// A light of that kind for what `camera` looks at.
+pub fn new_light(kind: LightKind, camera: &CameraSettings) -> LightSettings {
+    let (center, eye) = (Vec3A::from(camera.target), Vec3A::from(camera.position));
+    let away = eye - center;
+    let size = away.length().max(1e-3) * (0.5 * camera.fov_x.to_radians()).tan();
+    let back = away.normalize_or(Vec3A::NEG_Y);
+    let right = Vec3A::from(camera.up).cross(back).try_normalize();
+    let right = right.unwrap_or_else(|| back.any_orthonormal_vector());
+    let lamp = LAMP.x * right + LAMP.y * back.cross(right) + LAMP.z * back;
+    let position = rounded(center + size * lamp, size);
     let towards = center - position;
     let distance = towards.length();
     let facing = towards.normalize_or(Vec3A::NEG_Z);
@@ -125,12 +131,16 @@ mod tests {
 
     #[test]
     fn every_new_light_is_valid_and_lights_the_middle_as_brightly() {
-        let bounds = Aabb::new(Vec3A::new(-1.0, 2.0, 0.0), Vec3A::new(3.0, 5.0, 9.0));
+        let camera = CameraSettings {
+            position: [4.0, -9.0, 3.0],
+            target: [1.0, 0.5, 2.0],
+            ..CameraSettings::default()
+        };
         for kind in KINDS {
-            let light = new_light(kind, &bounds);
-            let scene = Settings { light: vec![light.clone()], ..Settings::default() };
+            let light = new_light(kind, &camera);
+            let scene = Settings { camera, light: vec![light.clone()], ..Settings::default() };
             validate(&scene, "").unwrap();
-            build(&scene, &VolumeCache::default(), NO_PROGRESS).unwrap();
+            let built = build(&scene, &VolumeCache::default(), NO_PROGRESS).unwrap();
             let from = match kind {
                 LightKind::Sun => continue,
                 LightKind::Point | LightKind::Spot => light.position(),
@@ -143,7 +153,11 @@ mod tests {
                 }
                 _ => 1.0,
             };
-            let distance = Vec3A::from(from).distance(bounds.center());
+            let size = glam::UVec2::new(160, 90);
+            let seen = built.camera.film_from_view(size, built.camera.view_from_world(from.into()));
+            let inside = seen.cmpgt(glam::Vec2::ZERO).all() && seen.cmplt(size.as_vec2()).all();
+            assert!(inside, "{kind:?} is out of the picture, at {seen}");
+            let distance = Vec3A::from(from).distance(camera.target.into());
             let irradiance = light.intensity.rgb().x * area / (distance * distance);
             assert!((irradiance / IRRADIANCE - 1.0).abs() < 0.1, "{kind:?}: {irradiance}");
         }

@@ -171,7 +171,7 @@ mod tests {
         assert_eq!([2000.0, 2.96, 0.5].map(kelvin_scale), [1.0, 1000.0, 5000.0]);
         assert_eq!(kelvin_scale(0.0), 1.0);
         assert_eq!(Program::Blender.kelvin_scale(0.5), 1000.0);
-        assert_eq!(Program::Houdini.kelvin_scale(2.0), 1300.0);
+        assert_eq!(Program::Houdini.kelvin_scale(2.5), 1000.0);
         assert_eq!(Program::Houdini.kelvin_scale(1800.0), 1.0);
     }
 }

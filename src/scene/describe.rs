@@ -88,7 +88,7 @@ fn grid(
     let half = if info.is_half { "half " } else { "" };
     Ok(GridDescription {
         name: info.name.clone(),
-        type_name: format!("{half}{}", info.type_name),
+        type_name: format!("{half}{}", info.value_type()),
         class: info.class.to_string(),
         voxel_size: info.transform.voxel_size.to_array(),
         voxels,

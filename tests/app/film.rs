@@ -21,7 +21,8 @@ fn bounces_are_typed_and_a_double_click_on_the_name_takes_them_back() {
     window.harness.hover_at(name);
     window.harness.step();
     for pressed in [true, false, true, false] {
-        window.harness.event(egui::Event::PointerButton {
+        // All in one frame: frames of the harness are far apart.
+        window.harness.input_mut().events.push(egui::Event::PointerButton {
             pos: name,
             button: egui::PointerButton::Primary,
             pressed,

@@ -9,6 +9,8 @@ fn with_light(kind: &str) -> Option<Window> {
     let mut window = Window::open(BALL)?;
     window.click(Role::DisclosureTriangle, "Lights");
     window.click(Role::Button, kind);
+    // There are handles only where there is a picture.
+    window.until_finished();
     Some(window)
 }
 

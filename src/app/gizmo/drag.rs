@@ -94,12 +94,13 @@ fn turned(light: &LightSettings, lens: &Lens, pivot: Vec3A, from: Pos2, to: Pos2
 mod tests {
     use super::super::lens::tests::lens;
     use super::*;
-    use crate::math::Aabb;
     use crate::scene::new_light;
+    use crate::scene::settings::CameraSettings;
     use egui::vec2;
 
     fn light(kind: LightKind) -> LightSettings {
-        new_light(kind, &Aabb::centered(Vec3A::splat(0.5)))
+        let camera = CameraSettings { position: [0.0, -5.0, 0.0], ..CameraSettings::default() };
+        new_light(kind, &camera)
     }
 
     #[test]

@@ -51,6 +51,16 @@ impl Handle {
         }
     }
 
+    /// What a drag of it does.
+    pub fn help(self) -> &'static str {
+        match self {
+            Self::Center => "Drag to move the light in the plane of the picture.",
+            Self::Axis(_) => "Drag to move the light along this axis.",
+            Self::Target => "Drag to aim the light.",
+            Self::Direction => "Drag to turn the sun around the shot.",
+        }
+    }
+
     /// What the edit is called.
     pub fn edit(self) -> &'static str {
         match self {
@@ -189,13 +199,13 @@ pub fn nearest(handles: &[(Handle, Pos2)], at: Pos2, reach: f32) -> Option<Handl
 mod tests {
     use super::super::lens::tests::lens;
     use super::*;
-    use crate::math::Aabb;
     use crate::scene::new_light;
+    use crate::scene::settings::CameraSettings;
 
     #[test]
     fn every_kind_has_its_handles_in_sight() {
         let lens = lens();
-        let bounds = Aabb::centered(Vec3A::splat(0.5));
+        let camera = CameraSettings { position: [0.0, -5.0, 0.0], ..CameraSettings::default() };
         for (kind, expected) in [
             (LightKind::Sun, &[Handle::Direction][..]),
             (LightKind::Point, &[Handle::Center]),
@@ -203,7 +213,7 @@ mod tests {
             (LightKind::Sphere, &[Handle::Center]),
             (LightKind::Quad, &[Handle::Center]),
         ] {
-            let figure = Figure::of(&new_light(kind, &bounds), &lens, Vec3A::ZERO);
+            let figure = Figure::of(&new_light(kind, &camera), &lens, Vec3A::ZERO);
             let handles = figure.handles_on(&lens);
             for handle in expected {
                 assert!(handles.iter().any(|(one, _)| one == handle), "{kind:?}: {handles:?}");

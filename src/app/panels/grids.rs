@@ -102,14 +102,14 @@ fn histogram(ui: &Ui, rect: Rect, grid: &GridDescription, voxels: &VoxelDescript
     let [low, high] = [voxels.min, voxels.max].map(|value| significant(f64::from(value)));
     response.on_hover_text(format!(
         "How often each value occurs, from {low} on the left to {high} on the right. Heights go by \
-         the logarithm of the number of voxels."
+         the square root of the number of voxels."
     ));
 }
 
-/// Draws how often each value occurs, the heights by the logarithm.
+/// Draws how often each value occurs, the heights by the root of that.
 pub fn histogram_bars(painter: &Painter, rect: Rect, voxels: &VoxelDescription, fill: Color32) {
     let most = voxels.histogram.iter().max().copied().unwrap_or(0);
-    let height = |count: u64| (1.0 + count as f32).ln() / (1.0 + most as f32).ln().max(1e-6);
+    let height = |count: u64| (count as f32 / most.max(1) as f32).sqrt();
     let width = rect.width() / voxels.histogram.len() as f32;
     for (index, &count) in voxels.histogram.iter().enumerate().filter(|(_, count)| **count > 0) {
         let left = rect.left() + width * index as f32;

@@ -7,9 +7,8 @@ use crate::app::theme::color;
 use crate::app::widgets::{
     Number, Vector, choice, color_rows, key_help, scaled, significant, strength,
 };
-use crate::math::Aabb;
-use crate::scene::settings::{LightKind, LightSettings};
-use crate::scene::{Settings, new_light};
+use crate::scene::new_light;
+use crate::scene::settings::{CameraSettings, LightKind, LightSettings};
 
 /// The kinds with their names and what they are good for.
 const KINDS: [(LightKind, &str, &str); 5] = [
@@ -24,38 +23,36 @@ const KINDS: [(LightKind, &str, &str); 5] = [
 pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
     folded_section(ui, "Lights", |ui| {
         let mut edit = environment(ui, panel);
-        let bounds = panel.bounds;
-        let settings = &mut panel.editor.document.settings;
-        edit = edit.or(add(ui, settings, &bounds, panel.selected_light));
-        let is_there = |index: &usize| *index < settings.light.len();
-        *panel.selected_light = panel.selected_light.filter(is_there);
-        if settings.light.is_empty() {
+        let camera = panel.editor.document.settings.camera;
+        let opened = panel.editor.opened().settings.light.clone();
+        let lights = &mut panel.editor.document.settings.light;
+        edit = edit.or(add(ui, lights, &camera, panel.selected_light));
+        *panel.selected_light = panel.selected_light.filter(|index| *index < lights.len());
+        if lights.is_empty() {
             ui.weak("There are no lamps in this scene.");
         }
-        let opened = &panel.editor.opened().settings.light.clone();
-        let lights = &mut panel.editor.document.settings.light;
-        let mut chose = false;
-        let mut index = 0;
-        while index < lights.len() {
-            let count = lights.len();
+        let kinds: Vec<LightKind> = lights.iter().map(|light| light.kind).collect();
+        for index in 0..kinds.len() {
             item(ui, lights, index, panel.selected_light);
             if *panel.selected_light == Some(index) {
-                let kind = lights[index].kind;
-                let reset = opened.get(index).filter(|light| light.kind == kind);
-                let reset = reset.cloned().unwrap_or_else(|| new_light(kind, &bounds));
-                ui.indent(("light", index), |ui| {
-                    edit = edit.or(keys(ui, &mut lights[index], &reset, &bounds));
-                    chose |= lights[index].kind != kind;
-                    edit = edit.or(buttons(ui, lights, index, panel.selected_light));
+                let reset = opened.get(index).filter(|light| light.kind == kinds[index]);
+                let reset = reset.cloned().unwrap_or_else(|| new_light(kinds[index], &camera));
+                let shown = ui.indent(("light", index), |ui| {
+                    let changed = keys(ui, &mut lights[index], &reset, &camera);
+                    changed.or(buttons(ui, lights, index, panel.selected_light))
                 });
+                edit = edit.or(shown.inner);
             }
-            // What was deleted has made room for the next one.
-            index += usize::from(lights.len() >= count);
+            // The list is another one after that.
+            if lights.len() != kinds.len() {
+                break;
+            }
         }
+        let same = lights.iter().zip(&kinds).all(|(light, kind)| light.kind == *kind);
         if let Some(name) = edit {
             panel.editor.name_edit(name);
         }
-        if chose {
+        if !same {
             panel.editor.choose();
         }
     });
@@ -78,8 +75,8 @@ fn environment(ui: &mut Ui, panel: &mut Panel<'_>) -> Option<&'static str> {
 /// A button for each kind.
 fn add(
     ui: &mut Ui,
-    settings: &mut Settings,
-    bounds: &Aabb,
+    lights: &mut Vec<LightSettings>,
+    camera: &CameraSettings,
     selected: &mut Option<usize>,
 ) -> Option<&'static str> {
     let mut edit = None;
@@ -89,8 +86,8 @@ fn add(
         for (kind, name, help) in KINDS {
             let response = ui.button(name).on_hover_text(format!("Add a light. {help}"));
             if response.accessible_name(format!("Add {}", name.to_lowercase())).clicked() {
-                settings.light.push(new_light(kind, bounds));
-                *selected = Some(settings.light.len() - 1);
+                *selected = Some(lights.len());
+                lights.push(new_light(kind, camera));
                 edit = Some("add a light");
             }
         }
@@ -162,11 +159,11 @@ fn keys(
     ui: &mut Ui,
     light: &mut LightSettings,
     reset: &LightSettings,
-    bounds: &Aabb,
+    camera: &CameraSettings,
 ) -> Option<&'static str> {
     let mut edit = None;
     if choice(ui, "Kind", "light.N.type", &mut light.kind) {
-        *light = changed_kind(light, bounds);
+        *light = changed_kind(light, camera);
         return Some("kind of light");
     }
     let kind = light.kind;
@@ -187,7 +184,7 @@ fn keys(
     if color_rows(ui, number, &mut light.intensity) {
         edit = Some("brightness of a light");
     }
-    edit = edit.or(place(ui, light, reset, bounds)).or(shape(ui, light, reset));
+    edit = edit.or(place(ui, light, reset, camera)).or(shape(ui, light, reset));
     if !matches!(kind, LightKind::Point | LightKind::Spot) {
         let help = key_help("light.N.visible");
         if ui.checkbox(&mut light.visible, "Seen by the camera").on_hover_text(help).changed() {
@@ -198,9 +195,9 @@ fn keys(
 }
 
 /// A light of the kind that was just chosen, where the old one stood, with its hue.
-fn changed_kind(light: &LightSettings, bounds: &Aabb) -> LightSettings {
+fn changed_kind(light: &LightSettings, camera: &CameraSettings) -> LightSettings {
     let stood = light.position.or(light.center);
-    let mut fresh = new_light(light.kind, bounds);
+    let mut fresh = new_light(light.kind, camera);
     fresh.intensity = scaled(light.intensity, strength(fresh.intensity));
     fresh.visible = light.visible;
     if fresh.position.is_some() {
@@ -216,9 +213,10 @@ fn place(
     ui: &mut Ui,
     light: &mut LightSettings,
     reset: &LightSettings,
-    bounds: &Aabb,
+    camera: &CameraSettings,
 ) -> Option<&'static str> {
-    let speed = (bounds.size().max_element() * 0.005).max(1e-4);
+    let distance = glam::Vec3::from(camera.position).distance(camera.target.into());
+    let speed = (distance * 0.002).max(1e-4);
     let vector = |name, key, speed, reset| Vector { name, key, speed, unit: "", reset };
     let mut changed = false;
     let mut row = |value: &mut Option<[f32; 3]>, mut present: [f32; 3], vector: Vector<'_>| {

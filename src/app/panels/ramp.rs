@@ -3,7 +3,8 @@
 use std::ops::RangeInclusive;
 
 use egui::{
-    Color32, EventFilter, Id, Key, Mesh, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2,
+    Color32, EventFilter, Id, Key, Mesh, Modifiers, Rect, Response, Sense, Shape, Stroke, Ui, pos2,
+    vec2,
 };
 
 use super::grids::histogram_bars;
@@ -161,7 +162,9 @@ impl Editor {
             stops::shift(stops, index, value + steps * step, span);
             self.edit = Some("move a stop");
         }
-        let deletes = pressed(Key::Delete) + pressed(Key::Backspace) > 0.0 && stops.len() > 1;
+        // Consumed, so that the next stop, which takes its place and focus, does not go too.
+        let consume = |key| ui.input_mut(|input| input.consume_key(Modifiers::NONE, key));
+        let deletes = (consume(Key::Delete) || consume(Key::Backspace)) && stops.len() > 1;
         if deletes {
             self.selected = stops::remove(stops, index);
             self.edit = Some("delete a stop");

@@ -40,22 +40,22 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
         if surfaces.is_empty() {
             ui.weak("There is nothing solid in this scene.");
         }
-        let mut index = 0;
-        while index < surfaces.len() {
+        for index in 0..surfaces.len() {
             let count = surfaces.len();
-            let is_new = index >= shapes.len();
-            let title = title(&surfaces[index], index);
-            let header = CollapsingHeader::new(title).id_salt(("surface", index));
-            header.default_open(is_new).show(ui, |ui| {
+            let header = CollapsingHeader::new(title(&surfaces[index], index));
+            let header = header.id_salt(("surface", index)).default_open(index >= shapes.len());
+            let shown = header.show(ui, |ui| {
                 let reset = opened.get(index).cloned().unwrap_or_else(|| surfaces[index].clone());
-                edit = edit.or(keys(ui, &mut surfaces[index], &reset, &bounds));
-                edit = edit.or(buttons(ui, surfaces, index));
+                let changed = keys(ui, &mut surfaces[index], &reset, &bounds);
+                changed.or(buttons(ui, surfaces, index))
             });
-            // What was deleted has made room for the next one.
-            index += usize::from(surfaces.len() >= count);
+            edit = edit.or(shown.body_returned.flatten());
+            // The list is another one after that.
+            if surfaces.len() != count {
+                break;
+            }
         }
-        let chose = surfaces.len() == shapes.len()
-            && surfaces.iter().zip(&shapes).any(|(surface, shape)| surface.shape != *shape);
+        let chose = surfaces.iter().zip(&shapes).any(|(surface, shape)| surface.shape != *shape);
         if let Some(name) = edit {
             panel.editor.name_edit(name);
         }

@@ -99,7 +99,11 @@ fn programs(
         Program::ALL.iter().zip(&helps).map(|(program, help)| (program.name(), &**help)).collect();
     let help = "The program that wrote the file: one click for its grids, its scale of temperature \
                 and its up axis.";
-    let clicked = row(ui, "Written by", help, |ui| segments(ui, &choices, None));
+    let clicked = ui.horizontal(|ui| {
+        // A label of its own width: the names need the room.
+        ui.label(RichText::new("Written by").color(color::TEXT_DIM)).on_hover_text(help);
+        segments(ui, &choices, None)
+    });
     let program = clicked.inner.and_then(|clicked| Program::ALL.get(clicked))?;
     let volume = settings.volume.get_mut(index)?;
     program.dress(volume, grids);
