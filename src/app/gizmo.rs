@@ -42,48 +42,74 @@ impl Gizmo {
     /// Draws the handles of the selected light over the picture in `view` and lets the hand move
     /// them. A sun, which is nowhere, is drawn around `pivot`.
     pub fn show(&mut self, ui: &Ui, view: View, editor: &mut Editor, pivot: Vec3A) {
-        let settings = &mut editor.document.settings;
-        let camera = scene::camera(settings).ok();
-        let light = self.selected.and_then(|index| settings.light.get_mut(index));
-        let (Some(light), Some(camera)) = (light, camera) else {
+        let Some(light) = self.light(editor) else {
             self.grip = None;
             return;
         };
+        self.take_hold(ui, view, editor, &light, pivot);
+        let Ok(camera) = scene::camera(&editor.document.settings) else { return };
         let lens = Lens { camera, view };
-        let handles = Figure::of(light, &lens, pivot).handles_on(&lens);
-        let responses: Vec<Response> =
-            handles.iter().map(|(handle, at)| sense(ui, view, *handle, *at)).collect();
-        if responses.iter().any(Response::drag_started) {
-            let origin = ui.input(|input| input.pointer.press_origin());
-            self.grip = origin.and_then(|from| Grip::at(from, &handles, light));
-        }
-        let held = responses.iter().find(|response| response.dragged());
-        let to = held.and_then(Response::interact_pointer_pos);
-        self.grip = self.grip.take().filter(|_| to.is_some());
-        let mut edit = None;
-        if let (Some(Grip { handle, light: before, from }), Some(to)) = (&self.grip, to) {
-            let moved = drag::dragged(before, *handle, &lens, pivot, [*from, to]);
-            edit = (*light != moved).then(|| handle.edit());
-            *light = moved;
-        }
-        let hovered = responses.iter().position(Response::hovered);
-        let hovered = hovered.and_then(|index| handles.get(index)).map(|(handle, _)| *handle);
-        let lit = self.grip.as_ref().map(|grip| grip.handle).or(hovered);
+        let moved = self.pull(ui, &lens, pivot).unwrap_or(light.clone());
+        let figure = Figure::of(&moved, &lens, pivot);
+        let handles = figure.handles_on(&lens);
+        let is_under = |(handle, at): &&(Handle, Pos2)| sense(ui, view, *handle, *at).hovered();
+        let under: Vec<Handle> =
+            handles.iter().filter(is_under).map(|(handle, _)| *handle).collect();
+        let lit = self.grip.as_ref().map(|grip| grip.handle).or(under.first().copied());
         if lit.is_some() {
             ui.set_cursor_icon(CursorIcon::Move);
         }
-        paint(ui, &lens, &Figure::of(light, &lens, pivot), lit);
-        if let Some(name) = edit {
-            editor.name_edit(name);
+        paint(ui, &lens, &figure, lit);
+        if let (Some(grip), true) = (&self.grip, moved != light) {
+            editor.name_edit(grip.handle.edit());
+            if let Some(light) =
+                self.selected.and_then(|at| editor.document.settings.light.get_mut(at))
+            {
+                *light = moved;
+            }
         }
     }
-}
 
-impl Grip {
-    /// Takes hold of the handle that a press at `from` meant.
-    fn at(from: Pos2, handles: &[(Handle, Pos2)], light: &LightSettings) -> Option<Self> {
-        let handle = figure::nearest(handles, from, 2.0 * REACH)?;
-        Some(Self { handle, light: light.clone(), from })
+    fn light(&self, editor: &Editor) -> Option<LightSettings> {
+        editor.document.settings.light.get(self.selected?).cloned()
+    }
+
+    /// Takes hold of the handle under a press, and lets go of it with the button. Where frames are
+    /// long, the hand may have left the handle before the press is seen, and the picture believes
+    /// that it is dragged: what counts is where the press was, and the camera stays.
+    fn take_hold(
+        &mut self,
+        ui: &Ui,
+        view: View,
+        editor: &mut Editor,
+        light: &LightSettings,
+        pivot: Vec3A,
+    ) {
+        let start = &editor.frame_start().settings;
+        let (pressed, down, from) = ui.input(|input| {
+            let pointer = &input.pointer;
+            (pointer.primary_pressed(), pointer.primary_down(), pointer.press_origin())
+        });
+        let from = from.filter(|from| ui.ctx().layer_id_at(*from) == Some(ui.layer_id()));
+        if let (true, Some(from), Ok(camera)) = (pressed, from, scene::camera(start)) {
+            let lens = Lens { camera, view };
+            let handles = Figure::of(light, &lens, pivot).handles_on(&lens);
+            let handle = figure::nearest(&handles, from, REACH);
+            self.grip = handle.map(|handle| Grip { handle, light: light.clone(), from });
+        }
+        if !down {
+            self.grip = None;
+        }
+        if self.grip.is_some() {
+            editor.document.settings.camera = start.camera;
+        }
+    }
+
+    /// The light as the hand has moved it.
+    fn pull(&self, ui: &Ui, lens: &Lens, pivot: Vec3A) -> Option<LightSettings> {
+        let Grip { handle, light, from } = self.grip.as_ref()?;
+        let to = ui.input(|input| input.pointer.latest_pos())?;
+        (to != *from).then(|| drag::dragged(light, *handle, lens, pivot, [*from, to]))
     }
 }
 

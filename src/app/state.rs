@@ -182,6 +182,11 @@ impl Editor {
         self.chose = false;
     }
 
+    /// The document as it was when this frame began.
+    pub fn frame_start(&self) -> &Document {
+        &self.before
+    }
+
     /// Says that a choice such as a mode or a shape was made in this frame. Keys that belonged to
     /// another go.
     pub fn choose(&mut self) {

@@ -141,3 +141,32 @@ fn spots_are_aimed_and_suns_turned_over_the_picture() {
     let turned = lights(&window)[0].direction();
     assert!(turned[0] < sun[0], "the sun went to the right: {sun:?} to {turned:?}");
 }
+
+/// Where frames are long, a press and the moves after it come in one.
+#[test]
+fn a_fast_hand_on_a_slow_machine_moves_the_light_and_not_the_camera() {
+    let Some(mut window) = with_light("Add point") else { return };
+    let camera = window.document().settings.camera;
+    let before = lights(&window)[0].position();
+    let handle = window.harness.get_by_role_and_label(Role::Button, "Move light");
+    let from = handle.rect().center();
+    let button = |pos, pressed| egui::Event::PointerButton {
+        pos,
+        button: egui::PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    let to = from + egui::vec2(90.0, 60.0);
+    window.harness.hover_at(from);
+    window.harness.step();
+    let events = &mut window.harness.input_mut().events;
+    events.extend([button(from, true), egui::Event::PointerMoved(to)]);
+    window.harness.step();
+    window.harness.hover_at(to + egui::vec2(10.0, 0.0));
+    window.harness.step();
+    window.harness.input_mut().events.push(button(to + egui::vec2(10.0, 0.0), false));
+    window.harness.step();
+    window.settle();
+    assert_ne!(lights(&window)[0].position(), before);
+    assert_eq!(window.document().settings.camera, camera);
+}

@@ -1,6 +1,6 @@
 //! The lights beside the fire itself: a list to add to, and the keys of the one that is selected.
 
-use egui::{Align, Button, Layout, RichText, Ui, vec2};
+use egui::{Button, RichText, Ui, vec2};
 
 use super::{Panel, folded_section};
 use crate::app::theme::color;
@@ -101,19 +101,13 @@ fn item(ui: &mut Ui, lights: &[LightSettings], index: usize, selected: &mut Opti
     let is_selected = *selected == Some(index);
     let name = format!("{} {}", name_of(light.kind), index + 1);
     let bright = format!("{} {}", significant(strength(light.intensity).into()), unit(light.kind));
-    ui.horizontal(|ui| {
-        let size = vec2(ui.available_width() - 4.0, 0.0);
-        let layout = Layout::left_to_right(Align::Center).with_main_justify(true);
-        ui.allocate_ui_with_layout(size, layout, |ui| {
-            let bright = RichText::new(bright).small().color(color::TEXT_DIM);
-            let button = Button::selectable(is_selected, &*name).right_text(bright);
-            let response = ui.add(button.min_size(size));
-            let help = "Show the keys of this light, and handles over the picture that move it.";
-            if response.on_hover_text(help).accessible_name(&name).clicked() {
-                *selected = if is_selected { None } else { Some(index) };
-            }
-        });
-    });
+    let bright = RichText::new(bright).small().color(color::TEXT_DIM);
+    let button = Button::selectable(is_selected, &*name).right_text(bright);
+    let response = ui.add(button.min_size(vec2(ui.available_width(), 0.0)));
+    let help = "Show the keys of this light, and handles over the picture that move it.";
+    if response.on_hover_text(help).accessible_name(&name).clicked() {
+        *selected = if is_selected { None } else { Some(index) };
+    }
 }
 
 fn buttons(

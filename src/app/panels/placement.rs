@@ -119,7 +119,7 @@ fn ramp(ui: &mut Ui, volume: &mut VolumeSettings, opened: &VolumeSettings) -> bo
         changed = true;
     }
     let mut kind = volume.kind();
-    if choice(ui, "Falloff", "volume.N.kind", &mut kind) {
+    if choice(ui, "Falloff", "volume.N.kind", &mut kind) && kind != volume.kind() {
         volume.kind = Some(kind);
         // What the other kind is measured by means nothing to this one.
         (volume.b, volume.h) = (None, None);
@@ -172,14 +172,14 @@ fn noise(ui: &mut Ui, volume: &mut VolumeSettings, opened: &VolumeSettings) -> b
 
 /// A number of a shape over four times what it was when opened.
 fn number(ui: &mut Ui, name: &str, key: &str, value: &mut f32, reset: f32) -> bool {
-    let reach = if reset == 0.0 { 1.0 } else { reset.abs() * 4.0 };
-    let key = &format!("volume.N.{key}");
-    let low = if reset < 0.0 || key.ends_with(".b") { -reach } else { 0.0 };
     let before = *value;
+    let reach = if reset == 0.0 { 1.0 } else { reset.abs() * 4.0 };
+    // Only the slope of a ramp may fall; what measures a length must not shrink to nothing.
+    let low = if key == "b" { -reach } else { 0.0 };
+    let is_length = ["radius", "h", "frequency"].contains(&key);
+    let key = &format!("volume.N.{key}");
     let number = Number { name, key, soft: low..=reach, logarithmic: false, unit: "", reset };
-    // What must be above zero keeps what it was.
-    let positive = ["radius", "h", "frequency"].iter().any(|one| key.ends_with(&format!(".{one}")));
-    if number.show(ui, value) && positive && *value <= 0.0 {
+    if number.show(ui, value) && is_length && *value <= 0.0 {
         *value = before;
     }
     *value != before
