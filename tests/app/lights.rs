@@ -10,7 +10,7 @@ fn with_light(kind: &str) -> Option<Window> {
     window.click(Role::DisclosureTriangle, "Lights");
     window.click(Role::Button, kind);
     // There are handles only where there is a picture.
-    window.until_finished();
+    window.until("there is a picture", |app| app.engine().picture().is_some());
     Some(window)
 }
 

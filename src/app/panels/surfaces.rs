@@ -4,7 +4,9 @@ use egui::{CollapsingHeader, RichText, Ui};
 
 use super::{Panel, folded_section, placement};
 use crate::app::theme::color;
-use crate::app::widgets::{Number, Vector, choice, color_rows, key_help, row, segments, strength};
+use crate::app::widgets::{
+    Number, Vector, choice, color_rows, key_help, row_label, segments, strength,
+};
 use crate::math::Aabb;
 use crate::scene::floor_under;
 use crate::scene::settings::{
@@ -292,7 +294,8 @@ fn material(
     let choices = MATERIALS.map(|(_, name, help)| (name, help));
     let chosen = MATERIALS.iter().position(|(other, ..)| *other == kind);
     let help = key_help("surface.N.material.type");
-    let clicked = row(ui, "Material", &help, |ui| segments(ui, &choices, chosen)).inner;
+    row_label(ui, "Material", &help);
+    let clicked = ui.name_inputs("Material", |ui| segments(ui, &choices, chosen));
     if let Some((other, ..)) = clicked.and_then(|index| MATERIALS.get(index)) {
         let reflectance = surface.material.and_then(|material| material.reflectance);
         surface.material = other.map(|kind| MaterialSettings {
