@@ -68,7 +68,7 @@ fn fires_glow_and_smoke_is_lit() {
         assert_eq!(volume.emission_grid(), Some("temperature"));
         assert_eq!(volume.emission.kelvin_scale(), 1000.0, "Blender's temperature of 0 to 3");
         assert!(opened.settings.light.is_empty(), "the fire is the light");
-        assert!(opened.notes.iter().any(|note| note.contains("\"temperature\"")));
+        assert!(opened.notes.iter().any(|note| note.text.contains("\"temperature\"")));
     }
     for name in ["plume", "cloud", "fog"] {
         let settings = opened(&asset(name)).settings;

@@ -331,7 +331,7 @@ impl Command {
                 .filter(|command| {
                     let shortcut = command.shortcut();
                     let taken = match shortcut.logical_key {
-                        Key::Space | Key::ArrowLeft | Key::ArrowRight => focused,
+                        Key::Space | Key::ArrowLeft | Key::ArrowRight | Key::Delete => focused,
                         _ => typing,
                     };
                     let plain = !shortcut.modifiers.command;

@@ -13,7 +13,7 @@ use crate::error::{Error, Result};
 use crate::render::publish::Extras;
 use crate::render::{Layer, Picture, Resume, Session};
 use crate::scene::settings::FilmSettings;
-use crate::scene::{Settings, VolumeCache};
+use crate::scene::{Note, Settings, VolumeCache};
 use crate::transport::Scene;
 use crate::transport::probes::Probes;
 
@@ -28,8 +28,8 @@ pub enum News {
         source: String,
         /// What it holds.
         settings: Box<Settings>,
-        /// What was guessed for a bare volume, one a line.
-        notes: Vec<String>,
+        /// What was guessed for a bare volume.
+        notes: Vec<Note>,
         /// How it goes on, where it was a snapshot, which keeps the size of its film.
         reopened: Option<Notice>,
     },

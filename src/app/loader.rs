@@ -11,7 +11,7 @@ use glam::UVec2;
 use super::prober::Prober;
 use super::reopen::{self, Reopened};
 use crate::error::{Error, Progress, Result};
-use crate::scene::{self, GridDescription, Overrides, Settings, VolumeCache};
+use crate::scene::{self, GridDescription, Note, Overrides, Settings, VolumeCache};
 use crate::transport::Scene;
 
 /// The grids of volume files by the file's name.
@@ -62,8 +62,8 @@ pub struct Outcome {
 pub struct Built {
     /// What it was built from.
     pub settings: Settings,
-    /// What was guessed for a bare volume, one a line.
-    pub notes: Vec<String>,
+    /// What was guessed for a bare volume.
+    pub notes: Vec<Note>,
     /// Ready to sample.
     pub scene: Arc<Scene>,
 }

@@ -4,6 +4,7 @@
 //! - `state`, `history`: what is edited, and undo; `commands`: everything that can be asked for.
 //! - `engine`, `loader`, `prober`: from edits to pictures, without ever blocking the window.
 //! - `viewport`, `navigation`, `zoom`, `display`, `readout`: the picture and the hand on it.
+//! - `gizmo`: handles over the picture that move a light; `stops`: those of a color ramp.
 //! - `duel`: two strategies on one scene, or a snapshot and the live picture, side by side.
 //! - `rectangle`, `yardstick`: a part of the picture and a reference that figures are told of;
 //!   `sheet`: all that in a file.
@@ -24,6 +25,7 @@ mod duel;
 mod engine;
 mod files;
 mod frame_stats;
+mod gizmo;
 mod history;
 mod loader;
 mod navigation;
@@ -38,6 +40,7 @@ mod saver;
 mod sheet;
 mod snapshots;
 mod state;
+mod stops;
 mod sweep;
 mod theme;
 mod up_axis;

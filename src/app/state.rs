@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use super::history::{Gesture, History};
 use crate::image::tone::Tone;
 use crate::render::turns::Share;
-use crate::scene::Settings;
+use crate::scene::{Settings, tidy};
 use crate::transport::strategy::{Preset, Strategy, Tracker};
 
 /// Everything that an edit changes and undo brings back.
@@ -136,6 +136,8 @@ pub struct Editor {
     before: Document,
     history: History<Document>,
     name: Option<String>,
+    /// Whether a choice has changed, which leaves keys behind that belonged to another.
+    chose: bool,
     gesture: u64,
     last_wheel: Option<Instant>,
 }
@@ -177,6 +179,18 @@ impl Editor {
         }
         self.before.clone_from(&self.document);
         self.name = None;
+        self.chose = false;
+    }
+
+    /// The document as it was when this frame began.
+    pub fn frame_start(&self) -> &Document {
+        &self.before
+    }
+
+    /// Says that a choice such as a mode or a shape was made in this frame. Keys that belonged to
+    /// another go.
+    pub fn choose(&mut self) {
+        self.chose = true;
     }
 
     /// Says what the change of this frame is called.
@@ -193,6 +207,11 @@ impl Editor {
         let strategy = &mut self.document.settings.strategy;
         if strategy.tracker_refusal().is_some() {
             strategy.advanced.tracker = Tracker::default();
+        }
+        if self.chose
+            && let Ok(tidied) = tidy(&self.document.settings)
+        {
+            self.document.settings = tidied;
         }
         let name = self.name.take().unwrap_or_else(|| "edit".to_owned());
         self.history.record(self.before.clone(), &name, Gesture(self.gesture));

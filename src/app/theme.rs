@@ -44,6 +44,12 @@ pub mod color {
     pub const CURVE_PROBES: Color32 = ACCENT;
     /// Curves: what glows.
     pub const CURVE_GLOW: Color32 = Color32::from_rgb(132, 204, 120);
+    /// Axes of the world over the picture: x, y and z.
+    pub const AXES: [Color32; 3] = [
+        Color32::from_rgb(226, 96, 96),
+        Color32::from_rgb(120, 196, 96),
+        Color32::from_rgb(104, 150, 240),
+    ];
     /// Something that failed.
     pub const ERROR: Color32 = Color32::from_rgb(232, 112, 98);
 }
@@ -62,6 +68,12 @@ pub mod space {
     pub const LABEL: f32 = 104.0;
     /// Width of the number in a row of settings.
     pub const NUMBER: f32 = 68.0;
+    /// Width and height of a histogram beside the name of a grid.
+    pub const HISTOGRAM: [f32; 2] = [96.0, 20.0];
+    /// Height of a color ramp, and of the handles of its stops below it.
+    pub const RAMP: [f32; 2] = [26.0, 14.0];
+    /// Width of the handle of a stop.
+    pub const STOP: f32 = 11.0;
     /// Height of a row of settings.
     pub const ROW_HEIGHT: f32 = 20.0;
     /// Height of the status line.

@@ -3,20 +3,15 @@
 
 use glam::{EulerRot, Quat, Vec3};
 
-use crate::scene::Settings;
 use crate::scene::settings::{Axis, VolumeSettings};
-
-/// The rotation about x, in degrees, that puts a file with `up` on its feet.
-fn rotation(up: Axis) -> f32 {
-    if up == Axis::Y { 90.0 } else { 0.0 }
-}
+use crate::scene::{Settings, upright};
 
 /// The axis of the file that points up in the world; `None` where it is turned otherwise.
 pub fn of(volume: &VolumeSettings) -> Option<Axis> {
     if volume.matrix.is_some() {
         return None;
     }
-    [Axis::Y, Axis::Z].into_iter().find(|axis| volume.rotate == [rotation(*axis), 0.0, 0.0])
+    [Axis::Y, Axis::Z].into_iter().find(|axis| volume.rotate == upright(*axis))
 }
 
 /// Makes `up` of the volume `index` point up. The camera follows a volume that stands alone.
@@ -24,7 +19,7 @@ pub fn set(settings: &mut Settings, index: usize, up: Axis) {
     let alone = settings.volume.len() == 1;
     let Some(volume) = settings.volume.get_mut(index) else { return };
     let before = turn(volume.rotate);
-    volume.rotate = [rotation(up), 0.0, 0.0];
+    volume.rotate = upright(up);
     if alone {
         let origin = Vec3::from(volume.translate);
         let camera = &mut settings.camera;

@@ -99,9 +99,7 @@ impl Number<'_> {
             let slider = self.slider(ui, value).on_hover_text(&help).labelled_by(label.id);
             let field = self.field(ui, value, limits).labelled_by(label.id);
             field.on_hover_text("Click to type, drag to change; with Shift more finely.");
-            let double =
-                ui.input(|input| input.pointer.button_double_clicked(egui::PointerButton::Primary));
-            if double && (label.contains_pointer() || slider.contains_pointer()) {
+            if is_reset(ui, &[&label, &slider]) {
                 *value = self.reset;
             }
         });
@@ -173,27 +171,84 @@ pub fn count(value: f64) -> String {
     }
 }
 
-/// Three numbers in a row, such as a point in space; whether any changed.
-pub fn vector(ui: &mut Ui, name: &str, key: &str, value: &mut [f32; 3], speed: f32) -> bool {
+/// Three numbers in a row, such as a point in space.
+pub struct Vector<'a> {
+    /// What it is called, also for screen readers and undo.
+    pub name: &'a str,
+    /// Its key in the scene file, which knows its help and what may be typed.
+    pub key: &'a str,
+    /// Change per point of a drag.
+    pub speed: f32,
+    /// The unit behind the numbers.
+    pub unit: &'a str,
+    /// What a double click on the name goes back to.
+    pub reset: [f32; 3],
+}
+
+impl Vector<'_> {
+    /// Shows the row; whether any number changed.
+    pub fn show(self, ui: &mut Ui, value: &mut [f32; 3]) -> bool {
+        let before = *value;
+        let key = keys::find(self.key);
+        let [low, high] = key.map_or([f64::MIN, f64::MAX], |key| key.limits);
+        let [x, y, z] = self.reset.map(|value| significant(f64::from(value)));
+        let help = format!("{}\n\nDouble-click the name for {x}, {y}, {z}.", key_help(self.key));
+        ui.horizontal(|ui| {
+            let label = row_label(ui, self.name, &help);
+            if is_reset(ui, &[&label]) {
+                *value = self.reset;
+            }
+            let gaps = 2.0 * ui.spacing().item_spacing.x;
+            let width = ((ui.available_width() - gaps) / 3.0).max(30.0);
+            ui.spacing_mut().button_padding.x = 2.0;
+            for (component, axis) in value.iter_mut().zip(["x", "y", "z"]) {
+                let field = DragValue::new(component)
+                    .speed(self.speed)
+                    .range(low..=high)
+                    .max_decimals(4)
+                    .suffix(self.unit)
+                    .custom_formatter(|value, _| significant(value))
+                    .custom_parser(finite);
+                ui.add_sized([width, space::ROW_HEIGHT], field)
+                    .accessible_name(format!("{} {axis}", self.name))
+                    .on_hover_text(&help);
+            }
+        });
+        *value != before
+    }
+}
+
+/// Whether something was double-clicked, which takes it back to what it was.
+pub fn is_reset(ui: &Ui, parts: &[&Response]) -> bool {
+    let button = egui::PointerButton::Primary;
+    let double = ui.input(|input| input.pointer.button_double_clicked(button));
+    double && parts.iter().any(|part| part.contains_pointer())
+}
+
+/// How strong a color is and, in a second row, its hue; whether either changed.
+pub fn color_rows(ui: &mut Ui, number: Number<'_>, value: &mut Color) -> bool {
     let before = *value;
-    let help = key_help(key);
-    ui.horizontal(|ui| {
-        row_label(ui, name, &help);
-        let gaps = 2.0 * ui.spacing().item_spacing.x;
-        let width = ((ui.available_width() - gaps) / 3.0).max(30.0);
-        ui.spacing_mut().button_padding.x = 2.0;
-        for (component, axis) in value.iter_mut().zip(["x", "y", "z"]) {
-            let field = DragValue::new(component)
-                .speed(speed)
-                .max_decimals(4)
-                .custom_formatter(|value, _| significant(value))
-                .custom_parser(finite);
-            ui.add_sized([width, space::ROW_HEIGHT], field)
-                .accessible_name(format!("{name} {axis}"))
-                .on_hover_text(&help);
-        }
-    });
+    let (name, help) = (format!("{} tint", number.name), key_help(number.key));
+    let mut strong = strength(*value);
+    if number.show(ui, &mut strong) {
+        *value = scaled(*value, strong);
+    }
+    if tint(ui, &name, &help, value) {
+        *value = scaled(*value, strong);
+    }
     *value != before
+}
+
+/// The hue of a color, which comes out with a largest channel of 1; whether it was picked.
+pub fn tint(ui: &mut Ui, name: &str, help: &str, value: &mut Color) -> bool {
+    let mut rgb = scaled(*value, 1.0).rgb().to_array();
+    let picked = row(ui, name, help, |ui| {
+        ui.color_edit_button_rgb(&mut rgb).accessible_name(name).on_hover_text(help).changed()
+    });
+    if picked.inner {
+        *value = scaled(from_rgb(rgb), 1.0);
+    }
+    picked.inner
 }
 
 /// A row of buttons of which at most one is on; the index of the one that was clicked.

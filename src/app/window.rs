@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use egui::{Context, Ui};
-use glam::UVec2;
+use glam::{UVec2, Vec3A};
 
 use super::commands::Command;
 use super::data;
@@ -24,6 +24,7 @@ use super::duel::Duel;
 use super::engine::{Engine, News};
 use super::files::{Answer, Dialog, Dialogs, Purpose};
 use super::frame_stats::FrameStats;
+use super::gizmo::Gizmo;
 use super::notices::{Level, Notice, Notices};
 use super::panels::bars::PathBar;
 use super::panels::palette::Palette;
@@ -37,7 +38,8 @@ use super::theme;
 use super::viewport::Viewport;
 use super::yardstick::Yardstick;
 use crate::error::Result;
-use crate::scene::DEFAULT_SCENE;
+use crate::math::Aabb;
+use crate::scene::{DEFAULT_SCENE, Note};
 
 /// How the window is set up.
 #[derive(Clone, Debug, Default)]
@@ -63,6 +65,7 @@ pub struct App {
     sweep: Sweep,
     viewport: Viewport,
     diagnostics: Diagnostics,
+    gizmo: Gizmo,
     notices: Notices,
     saver: Saver,
     dialogs: Dialogs,
@@ -74,7 +77,7 @@ pub struct App {
     /// What is open, as the user named it.
     source: String,
     /// What was guessed when it was opened.
-    notes: Vec<String>,
+    notes: Vec<Note>,
     folded: bool,
     help: bool,
     /// The list of all commands, while it is open.
@@ -120,6 +123,7 @@ impl App {
             sweep: Sweep::new(options.threads),
             viewport: Viewport::default(),
             diagnostics: Diagnostics::default(),
+            gizmo: Gizmo::default(),
             notices: Notices::default(),
             saver: Saver::default(),
             dialogs: options.dialogs,
@@ -229,6 +233,7 @@ impl App {
                 News::Opened { source, settings, notes, reopened } => {
                     self.notes = notes;
                     self.kept.opened(&settings);
+                    self.gizmo = Gizmo::default();
                     self.editor.open(*settings, reopened.is_some());
                     self.viewport.zoom = Default::default();
                     self.sweep.forget();
@@ -325,6 +330,15 @@ impl App {
             return Some(size.clamp(UVec2::ONE, UVec2::splat(self.largest)));
         }
         self.viewport.film_size()
+    }
+
+    /// The box around all that fills space, or around the camera's target where nothing does.
+    fn subject_bounds(&self) -> Aabb {
+        let camera = &self.editor.document.settings.camera;
+        let target = Vec3A::from(camera.target);
+        let around = Vec3A::splat(0.25 * target.distance(camera.position.into()).max(1e-3));
+        let filled = self.engine.built().and_then(|built| built.scene.world.finite_bounds());
+        filled.unwrap_or_else(|| Aabb::new(target - around, target + around))
     }
 
     fn note_start(&mut self, generation: u64) {

@@ -35,7 +35,7 @@ impl SceneArguments {
     pub fn settings(&self, cache: &VolumeCache, progress: Progress) -> Result<Settings, Refusal> {
         let opened = scene::open(&self.scene, &Overrides::default(), cache, progress)?;
         for note in &opened.notes {
-            warn(note);
+            warn(&note.to_string());
         }
         let overrides = Overrides { preset: self.preset, set: self.set.clone() };
         let mut settings = scene::apply(&opened.settings, &overrides).map_err(Refusal::usage)?;

@@ -6,6 +6,7 @@ use super::VolumeCache;
 use super::cache::{GridValues, PlacedGrid, VolumeFile};
 use super::guess::grid_bounds;
 use crate::error::{Progress, Result};
+use crate::volume::grid::Histogram;
 use crate::volume::vdb::GridInfo;
 
 /// A volume file in words and numbers.
@@ -39,6 +40,8 @@ pub struct GridDescription {
 /// The voxels of a grid in numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct VoxelDescription {
+    /// Whether they are vectors, such as colors.
+    pub is_vector: bool,
     /// How many are active.
     pub active: u64,
     /// The smallest active value; of vectors the smallest component.
@@ -51,6 +54,8 @@ pub struct VoxelDescription {
     pub bounds: Option<[[f32; 3]; 2]>,
     /// Memory that they take.
     pub memory_bytes: usize,
+    /// How often values occur, from `min` to `max`; of vectors their largest components.
+    pub histogram: Histogram,
 }
 
 /// Describes a volume file; what is read of it stays in `cache`.
@@ -83,7 +88,7 @@ fn grid(
     let half = if info.is_half { "half " } else { "" };
     Ok(GridDescription {
         name: info.name.clone(),
-        type_name: format!("{half}{}", info.type_name),
+        type_name: format!("{half}{}", info.value_type()),
         class: info.class.to_string(),
         voxel_size: info.transform.voxel_size.to_array(),
         voxels,
@@ -97,23 +102,28 @@ fn voxels(grid: &PlacedGrid) -> VoxelDescription {
         GridValues::Float(values) => {
             let stats = values.stats();
             VoxelDescription {
+                is_vector: false,
                 active: stats.active_voxels,
                 min: stats.min,
                 max: stats.max,
                 mean: stats.mean,
                 bounds,
                 memory_bytes: stats.memory_bytes,
+                histogram: values.histogram([stats.min, stats.max]),
             }
         }
         GridValues::Vector(values) => {
             let stats = values.stats();
+            let (min, max) = (stats.min.min_element(), stats.max.max_element());
             VoxelDescription {
+                is_vector: true,
                 active: stats.active_voxels,
-                min: stats.min.min_element(),
-                max: stats.max.max_element(),
+                min,
+                max,
                 mean: stats.mean.element_sum() / 3.0,
                 bounds,
                 memory_bytes: stats.memory_bytes,
+                histogram: values.histogram([min, max]),
             }
         }
     }

@@ -8,16 +8,17 @@ mod roles;
 use std::sync::Arc;
 
 use super::cache::{PlacedGrid, VolumeFile};
+use super::conventions::{Program, upright};
 use super::embedded::short_name;
 use super::frame::{bounds_in_world, frame};
 use super::settings::{
-    Albedo, CameraSettings, Color, DensitySettings, LightKind, LightSettings, PhaseSettings,
+    Albedo, Axis, CameraSettings, Color, DensitySettings, LightKind, LightSettings, PhaseSettings,
     Settings, VolumeSettings,
 };
 use crate::error::{Error, Progress, Result};
 use crate::math::Aabb;
-use crate::volume::vdb::MetaValue;
-use probe::{columns, quantile, two_digits, visible_bounds};
+pub(super) use probe::two_digits;
+use probe::{columns, quantile, visible_bounds};
 use roles::Candidate;
 
 /// A scene made up for a bare volume.
@@ -25,8 +26,42 @@ use roles::Candidate;
 pub struct Guess {
     /// The guesses as settings.
     pub settings: Settings,
-    /// The guesses in words, one a line.
-    pub notes: Vec<String>,
+    /// The guesses in words.
+    pub notes: Vec<Note>,
+}
+
+/// What a guess is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum About {
+    /// Which axis of the file points up.
+    UpAxis,
+    /// Which grid is the density and how thick it is.
+    Density,
+    /// Which grid glows, and how.
+    Glow,
+    /// What lights a volume that does not glow.
+    Light,
+}
+
+/// A guess in words.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Note {
+    /// What it is about.
+    pub about: About,
+    /// What was guessed.
+    pub text: String,
+}
+
+impl Note {
+    fn new(about: About, text: impl Into<String>) -> Self {
+        Self { about, text: text.into() }
+    }
+}
+
+impl std::fmt::Display for Note {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "guessed: {}", self.text)
+    }
 }
 
 /// How a volume should look.
@@ -80,13 +115,11 @@ pub(super) fn guess(file: &Arc<VolumeFile>, progress: Progress) -> Result<Guess>
         phase: PhaseSettings { g: 0.3 },
         ..VolumeSettings::default()
     };
-    if is_y_up {
-        volume.rotate = [90.0, 0.0, 0.0];
-    }
+    volume.rotate = upright(if is_y_up { Axis::Y } else { Axis::Z });
     volume.density = density_settings(density, look.depth, &bounds, axis, &mut notes);
-    if let Some((grid, kind)) = &glow {
+    if let Some((grid, role)) = glow {
         volume.emission =
-            glow::emission_settings(grid, kind, look.radiance, &bounds, axis, &mut notes);
+            glow::emission_settings(grid, role, look.radiance, &bounds, axis, &mut notes);
     }
 
     let mut settings = Settings::default();
@@ -96,7 +129,7 @@ pub(super) fn guess(file: &Arc<VolumeFile>, progress: Progress) -> Result<Guess>
     settings.camera = default_camera(&settings, &world_bounds);
     if glow.is_none() {
         daylight(&mut settings);
-        notes.push("guessed: nothing glows, so there is a sun and a sky".to_owned());
+        notes.push(Note::new(About::Light, "nothing glows, so there is a sun and a sky"));
     }
     settings.volume.push(volume);
     Ok(Guess { settings, notes })
@@ -146,28 +179,14 @@ pub(super) fn grid_bounds(grid: &PlacedGrid) -> Option<Aabb> {
     Some(bounds_in_world(bounds.min.as_vec3(), bounds.max.as_vec3(), &world_from_index))
 }
 
-/// Blender writes z up, Houdini y up; files of neither stand on the ground of one of the axes.
-fn is_y_up(file: &VolumeFile, bounds: &Aabb, notes: &mut Vec<String>) -> bool {
-    let metadata = &file.directory().metadata;
-    let grids = &file.directory().grids;
-    let sources = || std::iter::once(metadata).chain(grids.iter().map(|grid| &grid.metadata));
-    let creator = sources().find_map(|values| match values.get("creator") {
-        Some(MetaValue::Text(creator)) => Some(creator.to_ascii_lowercase()),
-        _ => None,
-    });
-    let says = |name: &str| creator.as_ref().is_some_and(|creator| creator.contains(name));
-    let from_blender = || {
-        let key = |key: &String| key.starts_with("blender/") || key == "file_base_resolution";
-        sources().any(|values| values.keys().any(key))
+/// Programs have habits; files of none of them stand on the ground of one of the axes.
+fn is_y_up(file: &VolumeFile, bounds: &Aabb, notes: &mut Vec<Note>) -> bool {
+    let (is_y_up, why) = match Program::of(file.directory()) {
+        Some(program) => (program.up() == Axis::Y, format!("{} wrote it", program.name())),
+        None => (stands_on_y(bounds), "from where it stands".to_owned()),
     };
-    let (is_y_up, why) = if says("houdini") {
-        (true, "Houdini wrote it")
-    } else if says("blender") || from_blender() {
-        (false, "Blender wrote it")
-    } else {
-        (stands_on_y(bounds), "from where it stands")
-    };
-    notes.push(format!("guessed: {} is up ({why})", if is_y_up { "y" } else { "z" }));
+    let axis = if is_y_up { "y" } else { "z" };
+    notes.push(Note::new(About::UpAxis, format!("{axis} is up ({why})")));
     is_y_up
 }
 
@@ -193,16 +212,17 @@ fn density_settings(
     wanted_depth: f32,
     bounds: &Aabb,
     axis: usize,
-    notes: &mut Vec<String>,
+    notes: &mut Vec<Note>,
 ) -> DensitySettings {
     let Some(density) = density else {
-        notes.push("guessed: there is no density, only fire".to_owned());
+        notes.push(Note::new(About::Density, "there is no density, only fire"));
         return DensitySettings { grid: None, scale: Color::Gray(0.0) };
     };
     let depths = columns(&density.grid, bounds, axis, |value| value.x.max(0.0));
     let scale = quantile(&depths, FAIRLY).map_or(1.0, |depth| two_digits(wanted_depth / depth));
     let name = &density.grid.name;
-    notes.push(format!("guessed: \"{name}\" is the density, made {scale} times as thick"));
+    let text = format!("\"{name}\" is the density, made {scale} times as thick");
+    notes.push(Note::new(About::Density, text));
     DensitySettings { grid: Some(name.clone()), scale: Color::Gray(scale) }
 }
 

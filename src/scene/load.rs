@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::files::{self, BUILTIN};
+use super::guess::Note;
 use super::{Overrides, Settings, VolumeCache, apply, embedded, guess, parse};
 use crate::error::{Error, NO_PROGRESS, Progress, Result};
 
@@ -11,8 +12,8 @@ use crate::error::{Error, NO_PROGRESS, Progress, Result};
 pub struct Opened {
     /// The scene.
     pub settings: Settings,
-    /// What was guessed for a bare volume, one a line; empty for scenes.
-    pub notes: Vec<String>,
+    /// What was guessed for a bare volume; empty for scenes.
+    pub notes: Vec<Note>,
 }
 
 /// Whether the name is that of a scene, a file or an embedded one, and not of a bare volume.

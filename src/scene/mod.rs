@@ -5,9 +5,11 @@
 //!         \----> bare volume --guess--/  \--save--> text
 //! ```
 
+mod additions;
 mod build;
 pub mod cache;
 mod check;
+mod conventions;
 mod describe;
 pub mod effect;
 mod embedded;
@@ -20,20 +22,25 @@ mod load;
 mod overrides;
 mod parse;
 mod resume;
+mod role;
 mod rules;
 mod save;
 mod schema;
 pub mod settings;
 
+pub use additions::{floor_under, new_light};
 pub use build::{build, camera};
 pub use cache::VolumeCache;
+pub use conventions::{Program, upright};
 pub use describe::{FileDescription, GridDescription, VoxelDescription, describe};
 pub use embedded::DEFAULT_SCENE;
 pub use fingerprints::fingerprints;
 pub use frame::frame;
+pub use guess::{About, Note};
 pub use load::{Opened, is_scene, load, open};
 pub use overrides::Overrides;
 pub use parse::{apply, parse, tidy, validate};
 pub use resume::{Kinship, Obstacle, kinship, settings_of};
+pub use role::Role;
 pub use save::{save, to_toml};
 pub use settings::Settings;

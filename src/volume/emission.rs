@@ -104,6 +104,16 @@ impl Emission {
     }
 }
 
+/// The color of a ramp at a value; black without stops.
+pub fn color_at(stops: &[(f32, Rgb)], value: f32) -> Rgb {
+    let above = stops.partition_point(|stop| stop.0 <= value);
+    match (above.checked_sub(1).map(|i| stops[i]), stops.get(above)) {
+        (Some((v0, c0)), Some(&(v1, c1))) => c0.lerp(c1, (value - v0) / (v1 - v0)),
+        (Some((_, color)), None) | (None, Some(&(_, color))) => color,
+        (None, None) => Rgb::ZERO,
+    }
+}
+
 impl Blackbody {
     fn at(&self, local: Vec3A, density: f32) -> Rgb {
         let kelvin = (self.field.at(local) - self.kelvin_offset) * self.kelvin_scale;
@@ -138,12 +148,7 @@ impl ColorRamp {
     }
 
     fn color(&self, value: f32) -> Rgb {
-        let above = self.stops.partition_point(|stop| stop.0 <= value);
-        match (above.checked_sub(1).map(|i| self.stops[i]), self.stops.get(above)) {
-            (Some((v0, c0)), Some(&(v1, c1))) => c0.lerp(c1, (value - v0) / (v1 - v0)),
-            (Some((_, color)), None) | (None, Some(&(_, color))) => color,
-            (None, None) => Rgb::ZERO,
-        }
+        color_at(&self.stops, value)
     }
 
     fn upper_bound(&self, local: &Aabb, density_max: f32) -> f32 {

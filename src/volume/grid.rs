@@ -8,6 +8,7 @@
 mod assemble;
 mod bricks;
 mod builder;
+mod histogram;
 mod index;
 mod index_box;
 mod range;
@@ -19,6 +20,7 @@ mod voxel;
 use glam::{IVec3, Vec3A};
 
 pub use builder::{GridBuilder, Leaf};
+pub use histogram::{BINS, Histogram};
 pub use index_box::IndexBox;
 pub use stats::GridStats;
 pub use voxel::Voxel;

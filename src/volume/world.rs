@@ -121,6 +121,12 @@ impl World {
         &self.instances
     }
 
+    /// The box around all volumes that have borders; `None` where there is none.
+    pub fn finite_bounds(&self) -> Option<Aabb> {
+        let bounds = self.instances.iter().map(|instance| *instance.bounds());
+        bounds.filter(|bounds| bounds.size().is_finite()).reduce(|all, one| all.union(&one))
+    }
+
     /// Whether both have the same volumes in the same places, as scenes built from one cache do
     /// while only other things change.
     pub fn has_volumes_of(&self, other: &Self) -> bool {

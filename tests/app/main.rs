@@ -5,10 +5,14 @@
 
 mod compare;
 mod display;
+mod film;
 mod keeping;
+mod lights;
 mod reference;
 mod snapshots;
+mod surfaces;
 mod sweep;
+mod volume_panel;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

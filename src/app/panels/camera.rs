@@ -4,23 +4,26 @@ use egui::Ui;
 
 use super::{Panel, section};
 use crate::app::commands::Command;
-use crate::app::widgets::{Number, vector};
+use crate::app::widgets::{Number, Vector};
 
 /// Shows the section.
 pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
     section(ui, "Camera", |ui| {
-        let reset = panel.editor.opened().settings.camera.fov_x;
+        let opened = panel.editor.opened().settings.camera;
         let camera = &mut panel.editor.document.settings.camera;
         let distance = glam::Vec3::from(camera.position).distance(camera.target.into());
         let speed = (distance * 0.005).max(1e-4);
         let mut edit = None;
-        if vector(ui, "Position", "camera.position", &mut camera.position, speed) {
+        let vector = |name, key, speed, reset| Vector { name, key, speed, unit: "", reset };
+        let position = vector("Position", "camera.position", speed, opened.position);
+        if position.show(ui, &mut camera.position) {
             edit = Some("camera position");
         }
-        if vector(ui, "Target", "camera.target", &mut camera.target, speed) {
+        let target = vector("Target", "camera.target", speed, opened.target);
+        if target.show(ui, &mut camera.target) {
             edit = Some("camera target");
         }
-        if vector(ui, "Up", "camera.up", &mut camera.up, 0.01) {
+        if vector("Up", "camera.up", 0.01, opened.up).show(ui, &mut camera.up) {
             edit = Some("camera up");
         }
         let angle = Number {
@@ -29,7 +32,7 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
             soft: 5.0..=120.0,
             logarithmic: false,
             unit: "°",
-            reset,
+            reset: opened.fov_x,
         };
         if angle.show(ui, &mut camera.fov_x) {
             edit = Some("angle of view");

@@ -2,10 +2,13 @@
 
 use egui::{ComboBox, Ui};
 
-use super::volume::grid_choice;
-use crate::app::widgets::{Number, from_rgb, key_help, row, segments, vector};
-use crate::scene::GridDescription;
+use super::explain;
+use crate::app::widgets::{Number, color_rows, key_help, row, segments, strength, tint};
 use crate::scene::settings::{Color, EmissionMode, EmissionSettings, Normalize, VolumeSettings};
+use crate::scene::{GridDescription, Role, VoxelDescription};
+
+/// The hottest that the slider of the kelvin scale makes a grid.
+const HOTTEST: f32 = 6000.0;
 
 /// Shows the rows; the name of the edit if anything changed.
 pub fn show(
@@ -15,26 +18,24 @@ pub fn show(
     index: usize,
     grids: &[GridDescription],
 ) -> Option<&'static str> {
-    let mut edit = emission_mode(ui, volume, index);
-    if let (Some(present), false) = (volume.emission_grid().map(str::to_owned), grids.is_empty()) {
-        let choice = (&mut volume.emission.grid, present);
-        edit = edit.or(grid_choice(
-            ui,
-            "Emission from",
-            "volume.N.emission.grid",
-            index,
-            grids,
-            choice,
-        ));
+    let edit = emission_mode(ui, volume, index, grids);
+    let grid = volume.emission_grid().map(str::to_owned);
+    if let Some(grid) = grid.as_ref().filter(|_| !grids.is_empty()) {
+        let help = key_help("volume.N.emission.grid");
+        row(ui, "Glows by", &help, |ui| ui.label(grid));
     }
+    let described = |described: &&GridDescription| Some(&described.name) == grid.as_ref();
+    let voxels = grids.iter().find(described).and_then(|grid| grid.voxels);
     let (emission, opened) = (&mut volume.emission, &opened.emission);
     let change = match emission.mode {
         EmissionMode::None => None,
-        EmissionMode::Grid => factor(ui, "Emission", "scale", &mut emission.scale, opened.scale()),
-        EmissionMode::Constant => color_row(ui, "Emission", "value", &mut emission.value),
-        EmissionMode::Source => color_row(ui, "Source", "le", &mut emission.le),
-        EmissionMode::Blackbody => blackbody(ui, emission, opened),
-        EmissionMode::Ramp => intensity(ui, emission, opened),
+        EmissionMode::Grid => of_grid(ui, emission, opened, voxels.as_ref()),
+        EmissionMode::Constant => {
+            color_row(ui, "Glow", "value", &mut emission.value, opened.value())
+        }
+        EmissionMode::Source => color_row(ui, "Source", "le", &mut emission.le, opened.le()),
+        EmissionMode::Blackbody => blackbody(ui, emission, opened, voxels.as_ref()),
+        EmissionMode::Ramp => ramp(ui, emission, opened, voxels.as_ref()),
     };
     edit.or(change)
 }
@@ -48,7 +49,12 @@ const MODES: [(EmissionMode, &str, &str); 6] = [
     (EmissionMode::Source, "source", "In proportion to the absorption."),
 ];
 
-fn emission_mode(ui: &mut Ui, volume: &mut VolumeSettings, index: usize) -> Option<&'static str> {
+fn emission_mode(
+    ui: &mut Ui,
+    volume: &mut VolumeSettings,
+    index: usize,
+    grids: &[GridDescription],
+) -> Option<&'static str> {
     let help = key_help("volume.N.emission.mode");
     let mode = volume.emission.mode;
     let present = MODES.iter().find(|(other, ..)| *other == mode).map_or("", |(_, name, _)| name);
@@ -58,7 +64,7 @@ fn emission_mode(ui: &mut Ui, volume: &mut VolumeSettings, index: usize) -> Opti
         let response = combo.selected_text(present).show_ui(ui, |ui| {
             for (other, name, help) in MODES {
                 if ui.selectable_label(other == mode, name).on_hover_text(help).clicked() {
-                    volume.emission.mode = other;
+                    set_mode(volume, other, grids);
                     changed = Some("emission mode");
                 }
             }
@@ -69,20 +75,88 @@ fn emission_mode(ui: &mut Ui, volume: &mut VolumeSettings, index: usize) -> Opti
     .inner
 }
 
+/// Sets the mode; one that reads a grid gets the one that is named like it, else the present one.
+fn set_mode(volume: &mut VolumeSettings, mode: EmissionMode, grids: &[GridDescription]) {
+    let present = volume.emission.grid.clone();
+    volume.emission.mode = mode;
+    let Some(role) = Role::of_mode(mode) else { return };
+    let same = |grid: &&GridDescription| Some(&grid.name) == present.as_ref() && role.suits(grid);
+    let grid = role.best_of(grids).or_else(|| grids.iter().find(same));
+    if let Some(grid) = grid.or_else(|| grids.iter().find(|grid| role.suits(grid))) {
+        role.give(volume, grid);
+    }
+}
+
+fn of_grid(
+    ui: &mut Ui,
+    emission: &mut EmissionSettings,
+    opened: &EmissionSettings,
+    voxels: Option<&VoxelDescription>,
+) -> Option<&'static str> {
+    let edit = factor(ui, "Emission", "scale", &mut emission.scale, opened.scale());
+    if voxels.is_some_and(|voxels| voxels.is_vector) {
+        return edit;
+    }
+    let mut color = emission.color();
+    let tinted = tint(ui, "Emission tint", &key_help("volume.N.emission.color"), &mut color);
+    let change = tinted.then(|| {
+        emission.color = Some(color);
+        "emission tint"
+    });
+    edit.or(change)
+}
+
+fn ramp(
+    ui: &mut Ui,
+    emission: &mut EmissionSettings,
+    opened: &EmissionSettings,
+    voxels: Option<&VoxelDescription>,
+) -> Option<&'static str> {
+    let mut stops = emission.stops().to_vec();
+    let reset = opened.stops.clone().unwrap_or_else(|| stops.clone());
+    let edit = super::ramp::show(ui, &mut stops, &reset, voxels);
+    if edit.is_some() {
+        emission.stops = Some(stops);
+    }
+    edit.or(intensity(ui, emission, opened)).or(times_density(ui, emission))
+}
+
+fn times_density(ui: &mut Ui, emission: &mut EmissionSettings) -> Option<&'static str> {
+    let mut on = emission.times_density();
+    let help = key_help("volume.N.emission.times_density");
+    ui.checkbox(&mut on, "Times density").on_hover_text(help).changed().then(|| {
+        emission.times_density = Some(on);
+        "glow times density"
+    })
+}
+
+/// What the range of the grid is in kelvin.
+fn kelvin_note(ui: &mut Ui, emission: &EmissionSettings, voxels: &VoxelDescription) {
+    let kelvin = |value: f32| {
+        let kelvin = (value - emission.kelvin_offset()) * emission.kelvin_scale();
+        format!("{:.0}", kelvin.max(0.0))
+    };
+    let (low, high) = (kelvin(voxels.min), kelvin(voxels.max));
+    explain(ui, &format!("The grid goes from {low} to {high} kelvin."));
+}
+
 fn blackbody(
     ui: &mut Ui,
     emission: &mut EmissionSettings,
     opened: &EmissionSettings,
+    voxels: Option<&VoxelDescription>,
 ) -> Option<&'static str> {
     let mut edit = intensity(ui, emission, opened);
+    let highest = voxels.map_or(0.0, |voxels| voxels.max);
+    let most = if highest > 0.0 { HOTTEST / highest } else { opened.kelvin_scale() * 4.0 };
     let mut scale = emission.kelvin_scale();
     let row_scale = Number {
         name: "Kelvin scale",
         key: "volume.N.emission.kelvin_scale",
-        soft: 0.0..=(opened.kelvin_scale() * 4.0).max(1.0),
+        soft: 0.0..=most.max(1.0),
         logarithmic: false,
         unit: " K",
-        reset: opened.kelvin_scale(),
+        reset: opened.kelvin_scale.unwrap_or(scale),
     };
     if row_scale.show(ui, &mut scale) {
         emission.kelvin_scale = Some(scale);
@@ -102,6 +176,20 @@ fn blackbody(
         emission.kelvin_offset = Some(offset);
         edit = Some("kelvin offset");
     }
+    if let Some(voxels) = voxels {
+        kelvin_note(ui, emission, voxels);
+    }
+    edit = edit.or(brightness(ui, emission, opened));
+    edit.or(times_density(ui, emission))
+}
+
+/// How the brightness depends on the temperature.
+fn brightness(
+    ui: &mut Ui,
+    emission: &mut EmissionSettings,
+    opened: &EmissionSettings,
+) -> Option<&'static str> {
+    let mut edit = None;
     let laws = [
         ("Peak", "Every temperature equally bright; only its color changes."),
         ("T⁴", "Brightness grows with the fourth power of the temperature, as in nature."),
@@ -114,6 +202,21 @@ fn blackbody(
     if let Some(law) = clicked.inner.and_then(|index| all.get(index)) {
         emission.normalize = Some(*law);
         edit = Some("brightness");
+    }
+    if emission.normalize() == Normalize::T4 {
+        let mut reference = emission.reference_kelvin();
+        let number = Number {
+            name: "Reference",
+            key: "volume.N.emission.reference_kelvin",
+            soft: 500.0..=4000.0,
+            logarithmic: false,
+            unit: " K",
+            reset: opened.reference_kelvin(),
+        };
+        if number.show(ui, &mut reference) {
+            emission.reference_kelvin = Some(reference);
+            edit = Some("reference temperature");
+        }
     }
     edit
 }
@@ -155,11 +258,20 @@ fn color_row(
     name: &'static str,
     key: &str,
     value: &mut Option<Color>,
+    reset: Color,
 ) -> Option<&'static str> {
-    let mut rgb = value.unwrap_or(Color::Gray(1.0)).rgb().to_array();
-    let key = format!("volume.N.emission.{key}");
-    vector(ui, name, &key, &mut rgb, 0.01).then(|| {
-        *value = Some(from_rgb(rgb.map(|channel| channel.max(0.0))));
+    let mut present = value.unwrap_or(Color::Gray(1.0));
+    let around = if reset.is_black() { 1.0 } else { strength(reset) };
+    let number = Number {
+        name,
+        key: &format!("volume.N.emission.{key}"),
+        soft: 0.0..=around * 20.0,
+        logarithmic: true,
+        unit: "",
+        reset: strength(reset),
+    };
+    color_rows(ui, number, &mut present).then(|| {
+        *value = Some(present);
         name
     })
 }

@@ -5,13 +5,17 @@ use glam::UVec2;
 
 use super::{Panel, section};
 use crate::app::theme::space;
-use crate::app::widgets::{finite, key_help, row, segments};
+use crate::app::widgets::{finite, is_reset, key_help, row, row_label, segments};
+use crate::scene::keys;
 use crate::scene::settings::FilmSettings;
 
 /// Shows the section. `window` is the size that the film takes from the window, `largest` the
 /// most that the graphics card can show a side.
 pub fn show(ui: &mut Ui, panel: &mut Panel<'_>, window: Option<UVec2>, largest: u32) {
     section(ui, "Film", |ui| {
+        let opened = &panel.editor.opened().settings;
+        let reset = (opened.film.seed, opened.film.spp, opened.path.max_scatters);
+        let reset_size = opened.film.size;
         let document = &mut panel.editor.document;
         let mut edit = None;
         let choices = [
@@ -26,20 +30,41 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>, window: Option<UVec2>, largest: 
             edit = Some("film size");
         }
         let film = &mut document.settings.film;
+        let path = &mut document.settings.path;
         if document.keep_size {
-            if fixed_size(ui, film, largest) {
+            if fixed_size(ui, film, reset_size, largest) {
                 edit = Some("film size");
             }
         } else if let Some(size) = window {
             row(ui, "", "", |ui| ui.weak(format!("{} × {} pixels", size.x, size.y)));
         }
-        if whole(ui, "Seed", "film.seed", &mut film.seed, None) {
+        let seed = Whole { name: "Seed", key: "film.seed", none: None, unit: "", reset: reset.0 };
+        if seed.show(ui, &mut film.seed) {
             edit = Some("seed");
         }
+        let stop = Whole {
+            name: "Stop at",
+            key: "film.spp",
+            none: Some("never"),
+            unit: " spp",
+            reset: reset.1.into(),
+        };
         let mut spp = u64::from(film.spp);
-        if whole(ui, "Stop at", "film.spp", &mut spp, Some("never")) {
+        if stop.show(ui, &mut spp) {
             film.spp = u32::try_from(spp).unwrap_or(u32::MAX);
             edit = Some("samples per pixel");
+        }
+        let bounces = Whole {
+            name: "Bounces",
+            key: "path.max_scatters",
+            none: Some("unbounded"),
+            unit: "",
+            reset: reset.2.into(),
+        };
+        let mut scatters = u64::from(path.max_scatters);
+        if bounces.show(ui, &mut scatters) {
+            path.max_scatters = u32::try_from(scatters).unwrap_or(u32::MAX);
+            edit = Some("bounces");
         }
         if let Some(name) = edit {
             panel.editor.name_edit(name);
@@ -47,43 +72,67 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>, window: Option<UVec2>, largest: 
     });
 }
 
-fn fixed_size(ui: &mut Ui, film: &mut FilmSettings, largest: u32) -> bool {
-    let help = key_help("film.size");
-    row(ui, "Pixels", &help, |ui| {
-        let mut changed = false;
+fn fixed_size(ui: &mut Ui, film: &mut FilmSettings, reset: [u32; 2], largest: u32) -> bool {
+    let before = film.size;
+    let [width, height] = reset;
+    let help = format!("{}\n\nDouble-click for {width} × {height}.", key_help("film.size"));
+    ui.horizontal(|ui| {
+        let label = row_label(ui, "Pixels", &help);
         for (side, name) in film.size.iter_mut().zip(["Film width", "Film height"]) {
             let field = DragValue::new(side)
                 .range(1..=largest)
                 .custom_parser(finite)
                 .update_while_editing(false);
             let response = ui.add_sized([space::NUMBER, space::ROW_HEIGHT], field);
-            changed |= response.accessible_name(name).on_hover_text(&help).changed();
+            response.accessible_name(name).on_hover_text(&help);
         }
-        changed
-    })
-    .inner
+        if is_reset(ui, &[&label]) {
+            film.size = reset;
+        }
+    });
+    film.size != before
 }
 
-/// A whole number; `none` is what 0 means in words.
-fn whole(ui: &mut Ui, name: &str, key: &str, value: &mut u64, none: Option<&str>) -> bool {
-    let help = key_help(key);
-    row(ui, name, &help, |ui| {
+/// A whole number.
+struct Whole<'a> {
+    name: &'a str,
+    key: &'a str,
+    /// What 0 means in words.
+    none: Option<&'a str>,
+    unit: &'a str,
+    /// What a double click goes back to.
+    reset: u64,
+}
+
+impl Whole<'_> {
+    /// Shows the row; whether the number changed.
+    fn show(self, ui: &mut Ui, value: &mut u64) -> bool {
+        let before = *value;
+        let Self { name, key, none, unit, reset } = self;
         let words = |value: f64| match none {
             Some(none) if value == 0.0 => none.to_owned(),
-            Some(_) => format!("{value:.0} spp"),
-            None => format!("{value:.0}"),
+            _ => format!("{value:.0}{unit}"),
         };
         let number = |text: &str| match none {
             Some(none) if text.trim() == none => Some(0.0),
-            _ => finite(text.trim().trim_end_matches("spp")),
+            _ => finite(text.trim().trim_end_matches(unit)),
         };
-        let field = DragValue::new(value)
-            .speed(0.1)
-            .custom_formatter(|value, _| words(value))
-            .custom_parser(number)
-            .update_while_editing(false);
-        let field = ui.add_sized(vec2(space::NUMBER + 20.0, space::ROW_HEIGHT), field);
-        field.accessible_name(name).on_hover_text(&help).changed()
-    })
-    .inner
+        let [low, high] = keys::find(key).map_or([0.0, f64::MAX], |key| key.limits);
+        let help = format!("{}\n\nDouble-click for {}.", key_help(key), words(reset as f64));
+        ui.horizontal(|ui| {
+            let label = row_label(ui, name, &help);
+            let field = DragValue::new(value)
+                .speed(0.1)
+                .range(low..=high)
+                .custom_formatter(|value, _| words(value))
+                .custom_parser(number)
+                .update_while_editing(false);
+            let field = ui.add_sized(vec2(space::NUMBER + 20.0, space::ROW_HEIGHT), field);
+            field.accessible_name(name).on_hover_text(&help);
+            if is_reset(ui, &[&label]) {
+                *value = reset;
+            }
+        });
+        *value != before
+    }
 }

@@ -5,8 +5,9 @@ use egui::{Context, Grid, RichText, Ui, Window};
 use crate::app::commands::Command;
 use crate::app::theme::color;
 
-const MOUSE: [(&str, &str); 8] = [
+const MOUSE: [(&str, &str); 9] = [
     ("Drag", "Orbit around the target"),
+    ("Drag a handle", "Move or aim the selected light"),
     ("Middle drag, Shift+drag", "Pan"),
     ("Wheel, right drag", "Dolly"),
     ("Ctrl+wheel", "Zoom to pixels"),

@@ -9,14 +9,19 @@ pub mod display;
 pub mod emission;
 pub mod figures;
 pub mod film;
+pub mod grids;
 pub mod help;
+pub mod lights;
 pub mod measures;
 pub mod menu;
 pub mod noise_plot;
 pub mod palette;
+pub mod placement;
+pub mod ramp;
 pub mod status;
 pub mod strategy;
 pub mod strip;
+pub mod surfaces;
 pub mod sweep;
 pub mod unsaved;
 pub mod volume;
@@ -30,6 +35,8 @@ use super::loader::Grids;
 use super::state::Editor;
 use super::theme::color;
 use super::yardstick::Yardstick;
+use crate::math::Aabb;
+use crate::scene::Note;
 
 /// What a panel may read and change.
 pub struct Panel<'a> {
@@ -37,8 +44,12 @@ pub struct Panel<'a> {
     pub editor: &'a mut Editor,
     /// The grids of all files seen so far.
     pub grids: &'a Grids,
-    /// What was guessed when a bare volume was opened, one a line.
-    pub notes: &'a [String],
+    /// What was guessed when a bare volume was opened.
+    pub notes: &'a [Note],
+    /// The box around all that fills space, or around the camera's target where nothing does.
+    pub bounds: Aabb,
+    /// The light whose keys and handles are shown.
+    pub selected_light: &'a mut Option<usize>,
     /// How often probes are asked in the picture, relative to what they propose, if that is known.
     pub guided_flights: Option<f32>,
     /// The other side of a comparison.

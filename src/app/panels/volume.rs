@@ -1,15 +1,14 @@
-//! The volumes: their grids with ranges, and how they look.
+//! The volumes: what their files hold, what was guessed of it, and how they look.
 
-use egui::{CollapsingHeader, ComboBox, Grid, RichText, Ui};
+use egui::{CollapsingHeader, RichText, Ui};
 
-use super::{Panel, emission, explain, section};
+use super::{Panel, emission, explain, grids, placement, section};
+use crate::app::state::Document;
 use crate::app::theme::color;
 use crate::app::up_axis;
-use crate::app::widgets::{
-    Number, count, from_rgb, key_help, row, scaled, segments, significant, strength,
-};
+use crate::app::widgets::{Number, capitalized, color_rows, key_help, row, segments, strength};
 use crate::scene::settings::{Albedo, Axis, Color, VolumeSettings};
-use crate::scene::{GridDescription, Settings, VoxelDescription};
+use crate::scene::{About, GridDescription, Note, Program, Settings};
 
 /// Shows the section.
 pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
@@ -18,9 +17,7 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
         if volumes == 0 {
             ui.weak("There is no volume in this scene.");
         }
-        for note in panel.notes {
-            explain(ui, note);
-        }
+        notes(ui, panel);
         for index in 0..volumes {
             let title = title(&panel.editor.document.settings.volume[index], index);
             if volumes == 1 {
@@ -34,6 +31,16 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
             }
         }
     });
+}
+
+/// What was guessed and still stands.
+fn notes(ui: &mut Ui, panel: &Panel<'_>) {
+    let volumes = |document: &Document| document.settings.volume.first().cloned();
+    let present = volumes(&panel.editor.document).zip(volumes(panel.editor.opened()));
+    let Some((volume, opened)) = present else { return };
+    for note in panel.notes.iter().filter(|note| stands(note, &volume, &opened)) {
+        explain(ui, &capitalized(&note.to_string()));
+    }
 }
 
 /// What a volume is called: its name, or its file, or its shape.
@@ -50,95 +57,109 @@ fn title(volume: &VolumeSettings, index: usize) -> String {
     }
 }
 
-fn up_axis_row(ui: &mut Ui, settings: &mut Settings, index: usize) -> Option<&'static str> {
+fn up_axis_row(
+    ui: &mut Ui,
+    settings: &mut Settings,
+    index: usize,
+    guess: Option<&Note>,
+) -> Option<&'static str> {
     let axes = [Axis::Y, Axis::Z];
     let present = settings.volume.get(index).and_then(up_axis::of);
     let chosen = axes.iter().position(|axis| Some(*axis) == present);
     let help = "Which way is up in the file: Houdini's files have y up, Blender's z.";
-    let clicked =
-        row(ui, "Up axis", help, |ui| segments(ui, &[("Y up", help), ("Z up", help)], chosen));
+    let clicked = row(ui, "Up axis", help, |ui| {
+        let clicked = segments(ui, &[("Y up", help), ("Z up", help)], chosen);
+        if let Some(note) = guess {
+            let text = RichText::new("guess").small().italics().color(color::WARNING);
+            let help = format!("Guessed: {}. A click on the other button mends it.", note.text);
+            ui.label(text).on_hover_text(help);
+        }
+        clicked
+    });
     let axis = clicked.inner.and_then(|clicked| axes.get(clicked))?;
     up_axis::set(settings, index, *axis);
     Some("up axis")
+}
+
+/// One click for all that a program's files have in common.
+fn programs(
+    ui: &mut Ui,
+    settings: &mut Settings,
+    index: usize,
+    grids: &[GridDescription],
+) -> Option<&'static str> {
+    let helps = Program::ALL.map(|program| {
+        let up = if program.up() == Axis::Y { "y" } else { "z" };
+        format!(
+            "Take density, fire and the scale of temperature as {} writes them, with {up} up.",
+            program.name()
+        )
+    });
+    let choices: Vec<(&str, &str)> =
+        Program::ALL.iter().zip(&helps).map(|(program, help)| (program.name(), &**help)).collect();
+    let help = "The program that wrote the file: one click for its grids, its scale of temperature \
+                and its up axis.";
+    let clicked = ui.horizontal(|ui| {
+        // A label of its own width: the names need the room.
+        ui.label(RichText::new("Written by").color(color::TEXT_DIM)).on_hover_text(help);
+        segments(ui, &choices, None)
+    });
+    let program = clicked.inner.and_then(|clicked| Program::ALL.get(clicked))?;
+    let volume = settings.volume.get_mut(index)?;
+    program.dress(volume, grids);
+    if volume.matrix.is_none() {
+        up_axis::set(settings, index, program.up());
+    }
+    Some("conventions of a program")
+}
+
+/// Whether what was guessed still stands.
+fn stands(note: &Note, volume: &VolumeSettings, opened: &VolumeSettings) -> bool {
+    match note.about {
+        About::UpAxis => volume.rotate == opened.rotate,
+        About::Density => volume.density == opened.density,
+        About::Glow => {
+            let of = |volume: &VolumeSettings| {
+                (volume.emission.mode, volume.emission.grid.clone(), volume.emission.kelvin_scale)
+            };
+            of(volume) == of(opened)
+        }
+        About::Light => true,
+    }
 }
 
 fn one(ui: &mut Ui, panel: &mut Panel<'_>, index: usize) {
     let file = panel.editor.document.settings.volume[index].file.as_ref();
     let grids = file.and_then(|file| panel.grids.get(file)).map_or(&[][..], Vec::as_slice);
     let opened = panel.editor.opened().settings.volume.get(index).cloned().unwrap_or_default();
+    let size = panel.bounds.size().max_element();
     let settings = &mut panel.editor.document.settings;
     let volume = &settings.volume[index];
+    let (mode, shape) = (volume.emission.mode, volume.kind);
     let mut edit = None;
     if volume.file.is_some() && volume.matrix.is_none() {
-        edit = up_axis_row(ui, settings, index);
+        let guess = panel.notes.iter().find(|note| note.about == About::UpAxis);
+        let guess = guess.filter(|note| stands(note, volume, &opened));
+        edit = up_axis_row(ui, settings, index, guess);
+    }
+    if !grids.is_empty() {
+        edit = edit.or(programs(ui, settings, index, grids));
     }
     let volume = &mut settings.volume[index];
-    if !grids.is_empty() {
-        grid_table(ui, index, grids);
-        let present = volume.density_grid().to_owned();
-        let choice = (&mut volume.density.grid, present);
-        let key = "volume.N.density.grid";
-        edit = edit.or(grid_choice(ui, "Density from", key, index, grids, choice));
-    }
+    edit = edit.or(grids::show(ui, volume, &opened, grids, panel.notes));
     edit = edit.or(medium(ui, volume, &opened));
     edit = edit.or(emission::show(ui, volume, &opened, index, grids));
+    edit = edit.or(placement::shape(ui, volume, &opened));
+    let place = CollapsingHeader::new("Placement").id_salt(("placement", index));
+    let moved = place.show(ui, |ui| placement::show(ui, volume, &opened, size)).body_returned;
+    edit = edit.or(moved.flatten());
+    let chose = (volume.emission.mode, volume.kind) != (mode, shape);
     if let Some(name) = edit {
         panel.editor.name_edit(name);
     }
-}
-
-fn grid_table(ui: &mut Ui, index: usize, grids: &[GridDescription]) {
-    Grid::new(("grids", index)).num_columns(3).striped(true).spacing([14.0, 2.0]).show(ui, |ui| {
-        for grid in grids {
-            ui.label(RichText::new(&grid.name).color(color::TEXT));
-            match &grid.voxels {
-                Some(voxels) => voxel_cells(ui, voxels),
-                None => {
-                    let reason = grid.unsupported.as_deref().unwrap_or_default();
-                    ui.label(RichText::new("not rendered").small().color(color::WARNING))
-                        .on_hover_text(reason);
-                    ui.label("");
-                }
-            }
-            ui.end_row();
-        }
-    });
-}
-
-fn voxel_cells(ui: &mut Ui, voxels: &VoxelDescription) {
-    let [low, high] = [voxels.min, voxels.max].map(|value| significant(f64::from(value)));
-    ui.label(RichText::new(format!("{low} … {high}")).color(color::TEXT))
-        .on_hover_text("The lowest and the highest value in the grid.");
-    let voxels = format!("{} voxels", count(voxels.active as f64));
-    ui.label(RichText::new(voxels).small().color(color::TEXT_DIM))
-        .on_hover_text("How many voxels hold a value.");
-}
-
-/// A choice among the file's grids; the name of the edit if it changed.
-pub fn grid_choice(
-    ui: &mut Ui,
-    name: &'static str,
-    key: &str,
-    index: usize,
-    grids: &[GridDescription],
-    (chosen, present): (&mut Option<String>, String),
-) -> Option<&'static str> {
-    let help = key_help(key);
-    row(ui, name, &help, |ui| {
-        let mut changed = false;
-        let combo = ComboBox::from_id_salt((name, index)).selected_text(&present).width(120.0);
-        let response = combo.show_ui(ui, |ui| {
-            for grid in grids {
-                if ui.selectable_label(grid.name == present, &grid.name).clicked() {
-                    *chosen = Some(grid.name.clone());
-                    changed = true;
-                }
-            }
-        });
-        response.response.accessible_name(name).on_hover_text(&help);
-        changed.then_some(name)
-    })
-    .inner
+    if chose {
+        panel.editor.choose();
+    }
 }
 
 fn medium(
@@ -147,10 +168,9 @@ fn medium(
     opened: &VolumeSettings,
 ) -> Option<&'static str> {
     let mut edit = None;
-    let mut density = strength(volume.density.scale);
     let reset = strength(opened.density.scale);
     let around = if reset > 0.0 { reset } else { 1.0 };
-    let row = Number {
+    let number = Number {
         name: "Density",
         key: "volume.N.density.scale",
         soft: 0.0..=around * 20.0,
@@ -158,8 +178,7 @@ fn medium(
         unit: "",
         reset,
     };
-    if row.show(ui, &mut density) {
-        volume.density.scale = scaled(volume.density.scale, density);
+    if color_rows(ui, number, &mut volume.density.scale) {
         edit = Some("density");
     }
     edit = edit.or(albedo(ui, volume, opened));
@@ -187,14 +206,13 @@ fn albedo(
         Albedo::Rgb(rgb) => Some(Color::Rgb(*rgb)),
         Albedo::Grid(_) => None,
     };
-    let help = key_help("volume.N.albedo");
-    let Some(present) = as_color(&volume.albedo) else {
+    let Some(mut value) = as_color(&volume.albedo) else {
         if let Albedo::Grid(key) = &volume.albedo {
+            let help = key_help("volume.N.albedo");
             row(ui, "Albedo", &help, |ui| ui.weak(format!("from the grid {}", key.grid)));
         }
         return None;
     };
-    let mut value = strength(present);
     let number = Number {
         name: "Albedo",
         key: "volume.N.albedo",
@@ -203,20 +221,11 @@ fn albedo(
         unit: "",
         reset: as_color(&opened.albedo).map_or(0.0, strength),
     };
-    let mut edited = None;
-    if number.show(ui, &mut value) {
-        edited = Some(scaled(present, value));
-    }
-    let mut rgb = present.rgb().to_array();
-    let tint = row(ui, "Albedo tint", &help, |ui| {
-        ui.color_edit_button_rgb(&mut rgb).accessible_name("Albedo tint")
-    });
-    if tint.inner.changed() {
-        edited = Some(from_rgb(rgb));
-    }
-    volume.albedo = match edited? {
-        Color::Gray(value) => Albedo::Gray(value),
-        Color::Rgb(rgb) => Albedo::Rgb(rgb),
-    };
-    Some("albedo")
+    color_rows(ui, number, &mut value).then(|| {
+        volume.albedo = match value {
+            Color::Gray(value) => Albedo::Gray(value),
+            Color::Rgb(rgb) => Albedo::Rgb(rgb),
+        };
+        "albedo"
+    })
 }

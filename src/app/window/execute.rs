@@ -114,9 +114,7 @@ impl App {
     /// Moves the camera so that everything finite that fills space is in the picture.
     fn frame_volume(&mut self) {
         let Some(built) = self.engine.built() else { return };
-        let bounds = built.scene.world.instances().iter().map(|instance| *instance.bounds());
-        let bounds = bounds.filter(|bounds| bounds.size().is_finite());
-        let Some(bounds) = bounds.reduce(|all, bounds| all.union(&bounds)) else { return };
+        let Some(bounds) = built.scene.world.finite_bounds() else { return };
         let size = self.film_size().unwrap_or(UVec2::ONE).as_vec2();
         let camera = &mut self.editor.document.settings.camera;
         *camera = scene::frame(camera, &bounds, size.x / size.y);

@@ -24,10 +24,13 @@ impl App {
         let grids = self.engine.grids().clone();
         let edited = self.duel.edited(&self.engine);
         let mut reopened = None;
+        let bounds = self.subject_bounds();
         let mut panel = Panel {
             editor: &mut self.editor,
             grids: &grids,
             notes: &self.notes,
+            bounds,
+            selected_light: &mut self.gizmo.selected,
             guided_flights: edited.picture().and_then(|picture| picture.stats.guided_flights),
             duel: &self.duel,
             yardstick: &mut self.yardstick,
@@ -87,6 +90,7 @@ impl App {
         let picture = self.shown_picture().cloned();
         let shown = self.shown(ui.ctx());
         let is_live = self.snapshots.picture().is_none() || self.versus.is_some();
+        let is_plain = self.map().is_none();
         let map = self.map().map(|map| Legend::of_map(map.kind, map.key));
         let map = map.or_else(|| shown.is_false_color().then(Legend::of_stops));
         egui::CentralPanel::no_frame().show(ui, |ui| {
@@ -106,6 +110,10 @@ impl App {
             let clicked = first.is_some_and(|view| view.clicked.is_some());
             if clicked && !self.diagnostics.wanted.ray {
                 self.rectangle.remove();
+            }
+            if let Some(view) = first.filter(|_| is_live && is_plain) {
+                let pivot = self.subject_bounds().center();
+                self.gizmo.show(ui, view, &mut self.editor, pivot);
             }
         });
     }
@@ -211,6 +219,8 @@ fn column(ui: &mut Ui, panel: &mut Panel<'_>, frame: Frame, film: Option<UVec2>,
             inner.show(ui, |ui| {
                 panels::strategy::show(ui, panel);
                 panels::volume::show(ui, panel);
+                panels::lights::show(ui, panel);
+                panels::surfaces::show(ui, panel);
                 panels::camera::show(ui, panel);
                 panels::film::show(ui, panel, film, largest);
                 panels::display::show(ui, panel);

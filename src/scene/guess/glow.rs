@@ -4,69 +4,53 @@ use glam::Vec3A;
 
 use super::FAIRLY;
 use super::probe::{columns, quantile, two_digits};
-use super::roles::{Candidate, Glow};
+use super::roles::Candidate;
+use super::{About, Note};
 use crate::math::{Aabb, luminance};
+use crate::scene::conventions::kelvin_scale;
+use crate::scene::role::{Role, flame_stops};
 use crate::scene::settings::{EmissionMode, EmissionSettings, Normalize};
 use crate::volume::blackbody;
-
-/// Kelvin of the hottest place of a temperature without a unit, where its range tells nothing.
-const HOTTEST_KELVIN: f32 = 2500.0;
-/// Kelvin per unit of temperature in files that follow Blender.
-const BLENDER_KELVIN: f32 = 1000.0;
 
 /// The emission of the grid that glows, so bright that a fairly bright line along `axis` shows the
 /// radiance that is wanted.
 pub(super) fn emission_settings(
     candidate: &Candidate,
-    kind: &Glow,
+    role: Role,
     wanted_radiance: f32,
     bounds: &Aabb,
     axis: usize,
-    notes: &mut Vec<String>,
+    notes: &mut Vec<Note>,
 ) -> EmissionSettings {
     let name = &candidate.grid.name;
     let mut emission = EmissionSettings { grid: Some(name.clone()), ..EmissionSettings::default() };
-    match kind {
-        Glow::Emission => {
-            emission.mode = EmissionMode::Grid;
-            notes.push(format!("guessed: \"{name}\" is the emission itself"));
-        }
-        Glow::Kelvin | Glow::Unitless => {
+    let what = match role {
+        Role::Temperature => {
             emission.mode = EmissionMode::Blackbody;
             emission.normalize = Some(Normalize::T4);
-            let scale = kelvin_scale(kind, candidate.max);
+            let scale = kelvin_scale(candidate.max);
             emission.kelvin_scale = Some(scale);
-            notes.push(format!("guessed: \"{name}\" is a temperature, {scale} kelvin a unit"));
+            format!("a temperature, {scale} kelvin a unit")
         }
-        Glow::Flame => {
+        Role::Flame => {
             emission.mode = EmissionMode::Ramp;
             emission.stops = Some(flame_stops(candidate.max));
-            notes.push(format!("guessed: \"{name}\" is flame, through a ramp of colors"));
+            "flame, through a ramp of colors".to_owned()
         }
-    }
+        Role::Emission | Role::Density => {
+            emission.mode = EmissionMode::Grid;
+            "the emission itself".to_owned()
+        }
+    };
+    notes.push(Note::new(About::Glow, format!("\"{name}\" is {what}")));
     let brightness = brightness_of(&emission);
     let sums = columns(&candidate.grid, bounds, axis, brightness);
     let scale = quantile(&sums, FAIRLY).map_or(1.0, |sum| two_digits(wanted_radiance / sum));
-    match kind {
-        Glow::Emission => emission.scale = Some(scale),
+    match emission.mode {
+        EmissionMode::Grid => emission.scale = Some(scale),
         _ => emission.intensity = Some(scale),
     }
     emission
-}
-
-fn kelvin_scale(kind: &Glow, max: f32) -> f32 {
-    match kind {
-        Glow::Kelvin => 1.0,
-        _ if (1.2..=5.0).contains(&max) => BLENDER_KELVIN,
-        _ => two_digits(HOTTEST_KELVIN / max),
-    }
-}
-
-/// From nothing through red and orange to yellow at the grid's largest value.
-fn flame_stops(max: f32) -> Vec<[f32; 4]> {
-    [[0.0, 0.0, 0.0, 0.0], [0.35, 0.5, 0.05, 0.003], [0.7, 2.0, 0.6, 0.08], [1.0, 3.0, 1.6, 0.5]]
-        .map(|[value, r, g, b]| [two_digits(value * max), r, g, b])
-        .to_vec()
 }
 
 /// The luminance of the emission at a value of its grid, at intensity 1.

@@ -85,7 +85,7 @@ pub(super) fn quantile(sorted: &[f32], part: f32) -> Option<f32> {
 }
 
 /// `value` to two digits, as one would type it.
-pub(super) fn two_digits(value: f32) -> f32 {
+pub(in crate::scene) fn two_digits(value: f32) -> f32 {
     format!("{value:.1e}").parse().unwrap_or(value)
 }
 

@@ -2,6 +2,8 @@
 
 use crate::error::Result;
 use crate::scene::cache::{GridValues, PlacedGrid};
+use crate::scene::conventions::{DENSITY, EMISSION, FLAME, OTHER, TEMPERATURE};
+use crate::scene::role::Role;
 use crate::volume::vdb::GridClass;
 
 /// A grid of numbers or colors that is worth rendering.
@@ -12,48 +14,6 @@ pub(super) struct Candidate {
     /// The mean of its active values.
     pub(super) mean: f32,
 }
-
-/// What glows, and how.
-pub(super) enum Glow {
-    /// A grid of emission itself.
-    Emission,
-    /// A temperature in kelvin.
-    Kelvin,
-    /// A temperature without a unit.
-    Unitless,
-    /// How much flame there is.
-    Flame,
-}
-
-const DENSITY: &[&str] = &["density", "smoke", "soot", "fog", "cloud", "density_noise", "vapour"];
-const EMISSION: &[&str] = &["emission", "emit", "ce", "le", "incandescence"];
-const TEMPERATURE: &[&str] = &["temperature", "temp", "heat", "kelvin"];
-const FLAME: &[&str] = &["flame", "flames", "fire", "burn", "flame_noise"];
-/// Grids that simulations write beside those that are seen.
-const OTHER: &[&str] = &[
-    "velocity",
-    "vel",
-    "v",
-    "shadow",
-    "color",
-    "colour",
-    "color_r",
-    "color_g",
-    "color_b",
-    "cd",
-    "fuel",
-    "fuel_noise",
-    "react",
-    "pressure",
-    "flags",
-    "phi",
-    "collision",
-    "divergence",
-    "age",
-];
-
-/// Above this a temperature is in kelvin.
-const KELVIN_FROM: f32 = 200.0;
 
 impl Candidate {
     /// `None` for grids with nothing above zero.
@@ -92,20 +52,16 @@ pub(super) fn density(grids: &[Candidate]) -> Option<&Candidate> {
 }
 
 /// The grid that glows: emission itself, else a temperature, else a flame.
-pub(super) fn glow(grids: &[Candidate]) -> Option<(&Candidate, Glow)> {
-    let best = |names: &[&str]| {
-        let usable = grids.iter().filter(|grid| grid.grid.class != GridClass::LevelSet);
-        usable.filter(|grid| grid.is_named(names)).min_by_key(|grid| grid.rank(names))
+pub(super) fn glow(grids: &[Candidate]) -> Option<(&Candidate, Role)> {
+    let best = |role: Role| {
+        let names = role.names();
+        let usable = grids.iter().filter(|grid| {
+            grid.grid.class != GridClass::LevelSet && (role == Role::Emission || grid.is_number())
+        });
+        let named = usable.filter(|grid| grid.is_named(names));
+        named.min_by_key(|grid| grid.rank(names)).map(|grid| (grid, role))
     };
-    if let Some(emission) = best(EMISSION) {
-        return Some((emission, Glow::Emission));
-    }
-    let number = |names: &[&str]| best(names).filter(|grid| grid.is_number());
-    if let Some(temperature) = number(TEMPERATURE) {
-        let in_kelvin = temperature.max > KELVIN_FROM;
-        return Some((temperature, if in_kelvin { Glow::Kelvin } else { Glow::Unitless }));
-    }
-    number(FLAME).map(|flame| (flame, Glow::Flame))
+    [Role::Emission, Role::Temperature, Role::Flame].into_iter().find_map(best)
 }
 
 /// Every grid of the file that has something above zero and might be seen; grids of other types

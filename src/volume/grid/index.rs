@@ -134,6 +134,23 @@ impl Index {
         }
     }
 
+    /// How often each of `bricks` bricks stands somewhere; of the background nothing is known.
+    pub fn brick_uses(&self, bricks: usize) -> Vec<u64> {
+        let (Table::Dense { ids, .. } | Table::Sparse { ids, .. }) = &self.table;
+        let mut node_uses = vec![0_u64; self.nodes.len()];
+        for &id in ids {
+            node_uses[id as usize] += 1;
+        }
+        let mut uses = vec![0; bricks];
+        for (node, node_uses) in self.nodes.iter().zip(node_uses).skip(1) {
+            node.iter().for_each(|&brick| uses[brick as usize] += node_uses);
+        }
+        if let Some(background) = uses.first_mut() {
+            *background = 0;
+        }
+        uses
+    }
+
     /// Memory taken, in bytes.
     pub fn memory_bytes(&self) -> usize {
         let table = match &self.table {

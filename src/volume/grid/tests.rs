@@ -262,3 +262,31 @@ fn wrong_sizes_are_refused_and_work_can_be_cancelled() {
     builder.add_tile(IVec3::ZERO, 8, 1.0, true).unwrap();
     assert!(matches!(builder.finish(&|_| false), Err(Error::Cancelled)));
 }
+
+#[test]
+fn a_histogram_counts_every_voxel_but_the_background() {
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(3);
+    for background in [0.0, 0.7] {
+        let oracle = Oracle::random(&mut rng, background);
+        let mut expected = [0; BINS];
+        for value in oracle.values.iter().filter(|value| **value != background) {
+            expected[((value * BINS as f32) as usize).min(BINS - 1)] += 1;
+        }
+        assert_eq!(oracle.grid().histogram([0.0, 1.0]), expected);
+    }
+    // A tile counts as the voxels it stands for, though they are stored once.
+    let mut builder = GridBuilder::new(0.0_f32);
+    builder.add_tile(IVec3::ZERO, 256, 2.0, true).unwrap();
+    let histogram = builder.finish(NO_PROGRESS).unwrap().histogram([0.0, 2.0]);
+    assert_eq!(histogram[BINS - 1], 1 << 24);
+    assert_eq!(histogram.iter().sum::<u64>(), 1 << 24);
+}
+
+#[test]
+fn vectors_are_counted_by_their_largest_component() {
+    let values = [Vec3A::new(0.1, 0.9, 0.2), Vec3A::new(-3.0, -1.0, -2.0), Vec3A::ZERO];
+    let dims = UVec3::new(1, 1, 3);
+    let grid = SparseGrid::from_dense(IVec3::ZERO, dims, &values, Vec3A::ZERO).unwrap();
+    let histogram = grid.histogram([-1.0, 1.0]);
+    assert_eq!((histogram[0], histogram[30], histogram.iter().sum()), (1, 1, 2));
+}

@@ -187,6 +187,13 @@ impl Descriptor {
 /// Levels of the usual tree, log2 of the places along an edge from the top down.
 const LEVELS: &str = "5_4_3";
 
+impl GridInfo {
+    /// The type of the values, such as `float` or `vec3s`; the whole type where it has no such part.
+    pub fn value_type(&self) -> &str {
+        split_type(&self.type_name).map_or(&self.type_name, |(value, _)| value)
+    }
+}
+
 /// The two parts of a type such as `Tree_float_5_4_3`.
 fn split_type(type_name: &str) -> Option<(&str, &str)> {
     type_name.strip_prefix("Tree_")?.split_once('_')

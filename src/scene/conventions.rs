@@ -1,0 +1,177 @@
+//! What programs call the grids of their volumes, which way is up in their files, and what their
+//! temperatures mean. The one place of that knowledge.
+
+use super::GridDescription;
+use super::guess::two_digits;
+use super::role::Role;
+use super::settings::{Axis, VolumeSettings};
+use crate::volume::vdb::{Directory, MetaValue};
+
+/// Grids of smoke.
+pub(super) const DENSITY: &[&str] =
+    &["density", "smoke", "soot", "fog", "cloud", "density_noise", "vapour"];
+/// Grids of emission itself.
+pub(super) const EMISSION: &[&str] = &["emission", "emit", "ce", "le", "incandescence"];
+/// Grids of temperatures.
+pub(super) const TEMPERATURE: &[&str] = &["temperature", "temp", "heat", "kelvin"];
+/// Grids that say how much flame there is.
+pub(super) const FLAME: &[&str] = &["flame", "flames", "fire", "burn", "flame_noise"];
+/// Grids that simulations write beside those that are seen.
+pub(super) const OTHER: &[&str] = &[
+    "velocity",
+    "vel",
+    "v",
+    "shadow",
+    "color",
+    "colour",
+    "color_r",
+    "color_g",
+    "color_b",
+    "cd",
+    "fuel",
+    "fuel_noise",
+    "react",
+    "pressure",
+    "flags",
+    "phi",
+    "collision",
+    "divergence",
+    "age",
+];
+
+/// Above this a temperature is in kelvin.
+const KELVIN_FROM: f32 = 200.0;
+/// Kelvin of the hottest place of a temperature whose unit is not known.
+const HOTTEST_KELVIN: f32 = 2500.0;
+/// Kelvin per unit of Blender's temperature, which goes from 0 to about 3.
+const BLENDER_KELVIN: f32 = 1000.0;
+/// The largest values by which Blender's temperature is known.
+const BLENDER_HOTTEST: std::ops::RangeInclusive<f32> = 1.2..=5.0;
+
+/// A program that simulates fire and smoke.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Program {
+    /// Blender's Mantaflow: z up; grids density, flame, temperature (0 to 3, not kelvin).
+    Blender,
+    /// Houdini's pyro: y up; grids density, temperature (no unit), flame, in older files heat.
+    Houdini,
+    /// EmberGen: z up; grids density, flames, temperature (no unit). It draws fire by its flames.
+    EmberGen,
+}
+
+impl Program {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Blender, Self::Houdini, Self::EmberGen];
+
+    /// What people call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Blender => "Blender",
+            Self::Houdini => "Houdini",
+            Self::EmberGen => "EmberGen",
+        }
+    }
+
+    /// The axis of its files that points up.
+    pub fn up(self) -> Axis {
+        match self {
+            Self::Houdini => Axis::Y,
+            Self::Blender | Self::EmberGen => Axis::Z,
+        }
+    }
+
+    /// The program that wrote a file, where the file tells.
+    pub(super) fn of(file: &Directory) -> Option<Self> {
+        let metadata = || {
+            let grids = file.grids.iter().map(|grid| &grid.metadata);
+            std::iter::once(&file.metadata).chain(grids)
+        };
+        let has =
+            |known: fn(&str) -> bool| metadata().any(|values| values.keys().any(|k| known(k)));
+        let creator = metadata().find_map(|values| match values.get("creator") {
+            Some(MetaValue::Text(creator)) => Some(creator.to_ascii_lowercase()),
+            _ => None,
+        });
+        let says = |name: &str| creator.as_ref().is_some_and(|creator| creator.contains(name));
+        let by_creator =
+            Self::ALL.into_iter().find(|program| says(&program.name().to_ascii_lowercase()));
+        by_creator.or_else(|| {
+            if has(|key| key == "embergen_version") {
+                Some(Self::EmberGen)
+            } else if has(|key| key.starts_with("blender/") || key == "file_base_resolution") {
+                Some(Self::Blender)
+            } else {
+                None
+            }
+        })
+    }
+
+    /// By which of its grids fire is drawn, the best first.
+    fn fire(self) -> [Role; 2] {
+        match self {
+            Self::Blender | Self::Houdini => [Role::Temperature, Role::Flame],
+            Self::EmberGen => [Role::Flame, Role::Temperature],
+        }
+    }
+
+    /// Takes density and fire of `volume` from the grids that this program writes them to, as far
+    /// as the file has them, with its scale of temperature. How thick and how bright it is stays.
+    pub fn dress(self, volume: &mut VolumeSettings, grids: &[GridDescription]) {
+        if let Some(density) = Role::Density.best_of(grids) {
+            Role::Density.give(volume, density);
+        }
+        let best = |role: Role| role.best_of(grids).map(|grid| (role, grid));
+        if let Some((role, grid)) = self.fire().into_iter().find_map(best) {
+            role.give(volume, grid);
+            if role == Role::Temperature {
+                let max = grid.voxels.as_ref().map_or(0.0, |voxels| voxels.max);
+                volume.emission.kelvin_scale = Some(self.kelvin_scale(max));
+            }
+        }
+    }
+
+    fn kelvin_scale(self, max: f32) -> f32 {
+        match self {
+            Self::Blender if max <= KELVIN_FROM => BLENDER_KELVIN,
+            Self::Houdini | Self::EmberGen if max <= KELVIN_FROM => hottest(max),
+            _ => 1.0,
+        }
+    }
+}
+
+/// Kelvin per unit of a temperature that reaches up to `max`.
+pub(super) fn kelvin_scale(max: f32) -> f32 {
+    match max {
+        _ if max > KELVIN_FROM => 1.0,
+        _ if BLENDER_HOTTEST.contains(&max) => BLENDER_KELVIN,
+        _ => hottest(max),
+    }
+}
+
+fn hottest(max: f32) -> f32 {
+    if max > 0.0 { two_digits(HOTTEST_KELVIN / max) } else { 1.0 }
+}
+
+/// The rotation, in degrees about x, y and z, that puts a file with `up` on its feet: the world's z
+/// is up.
+pub fn upright(up: Axis) -> [f32; 3] {
+    match up {
+        Axis::X => [0.0, -90.0, 0.0],
+        Axis::Y => [90.0, 0.0, 0.0],
+        Axis::Z => [0.0; 3],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn temperatures_are_told_by_their_largest_value() {
+        assert_eq!([2000.0, 2.96, 0.5].map(kelvin_scale), [1.0, 1000.0, 5000.0]);
+        assert_eq!(kelvin_scale(0.0), 1.0);
+        assert_eq!(Program::Blender.kelvin_scale(0.5), 1000.0);
+        assert_eq!(Program::Houdini.kelvin_scale(2.5), 1000.0);
+        assert_eq!(Program::Houdini.kelvin_scale(1800.0), 1.0);
+    }
+}

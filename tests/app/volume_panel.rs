@@ -1,0 +1,146 @@
+//! The volume panel: grids, guesses, the conventions of programs, and the ramp editor.
+
+use flambeau::scene::settings::{EmissionMode, VolumeSettings};
+
+use super::*;
+
+/// A window on a bare volume of the project, of which everything is guessed.
+fn bare_torch() -> Option<Window> {
+    let mut window = Window::start(tempfile::tempdir().unwrap(), Path::new("builtin:torch_hd"))?;
+    // The picture does not matter here.
+    window.press(Modifiers::NONE, Key::Space);
+    window.until_it_says("density as density");
+    Some(window)
+}
+
+fn volume(window: &Window) -> &VolumeSettings {
+    &window.document().settings.volume[0]
+}
+
+/// Runs frames until what was edited is what is rendered.
+fn until_accepted(window: &mut Window) {
+    window.until("the edit is built", |app| {
+        let built = app.engine().built().map(|built| &built.settings.volume);
+        built == Some(&app.editor().document.settings.volume)
+    });
+    assert!(window.app().notices().list().is_empty(), "{:?}", window.app().notices().list());
+}
+
+#[test]
+fn a_wrong_guess_is_one_click_to_mend() {
+    let Some(mut window) = bare_torch() else { return };
+    for grid in ["density", "flame", "temperature"] {
+        let name = format!("Histogram of {grid}");
+        assert!(window.harness.query_by_role_and_label(Role::Image, &name).is_some());
+    }
+    assert_eq!(volume(&window).emission.mode, EmissionMode::Blackbody);
+    assert!(window.has("Guessed: \"temperature\" is a temperature"));
+    assert_eq!(window.harness.query_all_by_label("guess").count(), 3, "two grids and the up axis");
+
+    window.click(Role::Button, "flame as flame");
+    assert_eq!(volume(&window).emission.mode, EmissionMode::Ramp);
+    assert_eq!(volume(&window).emission_grid(), Some("flame"));
+    assert!(!window.has("Guessed: \"temperature\""), "it is no guess any more");
+    assert_eq!(window.harness.query_all_by_label("guess").count(), 2);
+    until_accepted(&mut window);
+    window.press(Modifiers::COMMAND, Key::Z);
+    assert_eq!(volume(&window).emission.mode, EmissionMode::Blackbody);
+    assert_eq!(window.harness.query_all_by_label("guess").count(), 3);
+
+    window.click(Role::Button, "flame as density");
+    assert_eq!(volume(&window).density_grid(), "flame");
+    until_accepted(&mut window);
+}
+
+#[test]
+fn a_program_is_one_click_for_all_that_its_files_have_in_common() {
+    let Some(mut window) = bare_torch() else { return };
+    window.click(Role::Button, "Houdini");
+    assert_eq!(volume(&window).rotate, [90.0, 0.0, 0.0], "y is up");
+    assert_eq!(volume(&window).emission.kelvin_scale(), 840.0);
+    until_accepted(&mut window);
+    window.click(Role::Button, "EmberGen");
+    assert_eq!(volume(&window).rotate, [0.0; 3]);
+    assert_eq!(volume(&window).emission_grid(), Some("flame"));
+    until_accepted(&mut window);
+    window.click(Role::Button, "Blender");
+    assert_eq!(volume(&window).emission.kelvin_scale(), 1000.0);
+    until_accepted(&mut window);
+}
+
+/// Keys of the mode before would be refused.
+#[test]
+fn a_new_emission_mode_leaves_nothing_of_the_old_one() {
+    let Some(mut window) = bare_torch() else { return };
+    window.click(Role::Button, "flame as flame");
+    for (name, mode) in [
+        ("grid", EmissionMode::Grid),
+        ("source", EmissionMode::Source),
+        ("color ramp", EmissionMode::Ramp),
+        ("none", EmissionMode::None),
+        ("blackbody", EmissionMode::Blackbody),
+    ] {
+        window.click(Role::ComboBox, "Emission mode");
+        window.click(Role::Button, name);
+        assert_eq!(volume(&window).emission.mode, mode);
+        until_accepted(&mut window);
+    }
+    assert_eq!(volume(&window).emission_grid(), Some("temperature"), "by its name");
+    assert!(window.has("The grid goes from 1 to 2961 kelvin."));
+}
+
+#[test]
+fn stops_of_a_ramp_are_added_moved_and_deleted_by_hand_and_by_keys() {
+    let Some(mut window) = bare_torch() else { return };
+    window.click(Role::Button, "flame as flame");
+    let stops = |window: &Window| volume(window).emission.stops().to_vec();
+    let before = stops(&window);
+    window.click(Role::Button, "Add stop");
+    assert_eq!(stops(&window).len(), before.len() + 1);
+    until_accepted(&mut window);
+    window.click(Role::Button, "Delete stop");
+    assert_eq!(stops(&window), before, "what was added was chosen");
+
+    window.harness.get_by_role_and_label(Role::Slider, "Ramp stop 2").scroll_to_me();
+    window.settle();
+    let handle = |window: &Window| {
+        window.harness.get_by_role_and_label(Role::Slider, "Ramp stop 2").rect().center()
+    };
+    let from = handle(&window);
+    window.harness.hover_at(from);
+    window.harness.step();
+    window.harness.drag_at(from);
+    window.harness.hover_at(from + egui::vec2(10.0, 0.0));
+    window.harness.hover_at(from + egui::vec2(20.0, 0.0));
+    window.harness.drop_at(from + egui::vec2(20.0, 0.0));
+    window.harness.step();
+    window.settle();
+    let dragged = stops(&window);
+    assert!(dragged[1][0] > before[1][0] && dragged[1][1..] == before[1][1..]);
+    assert!((handle(&window).x - from.x - 20.0).abs() < 1.5);
+
+    // The stop has the focus now: keys move it, and none of them is a command.
+    window.press(Modifiers::NONE, Key::ArrowLeft);
+    assert!(stops(&window)[1][0] < dragged[1][0]);
+    window.press(Modifiers::NONE, Key::Delete);
+    assert_eq!(stops(&window).len(), before.len() - 1);
+    until_accepted(&mut window);
+    window.press(Modifiers::COMMAND, Key::Z);
+    assert_eq!(stops(&window).len(), before.len());
+}
+
+#[test]
+fn a_volume_is_placed_and_a_shape_measured() {
+    let Some(mut window) = Window::open(BALL) else { return };
+    window.click(Role::DisclosureTriangle, "Placement");
+    for (name, value) in [("Move x", 2.0), ("Rotate z", 30.0), ("Scale", 0.5), ("Radius", 1.5)] {
+        let field = window.harness.get_by_role_and_label(Role::SpinButton, name);
+        field.set_value_accesskit(value);
+        window.harness.step();
+        window.settle();
+    }
+    let placed = volume(&window);
+    assert_eq!((placed.translate, placed.rotate), ([2.0, 0.0, 0.0], [0.0, 0.0, 30.0]));
+    assert_eq!((placed.scale.axes(), placed.radius()), ([0.5; 3], 1.5));
+    until_accepted(&mut window);
+}
