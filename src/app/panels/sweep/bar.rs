@@ -10,6 +10,8 @@ use crate::render::sweep::{Entry, Ranking};
 
 /// Width of the bars and height of one.
 const SIZE: egui::Vec2 = vec2(190.0, 12.0);
+/// Width of a number on the axis.
+const LABEL: f32 = 48.0;
 /// The least that the axis spans, in powers of ten.
 const LEAST_SPAN: f64 = 0.5;
 
@@ -41,12 +43,19 @@ impl Axis {
         (self.low.ceil() as i32..=self.high.floor() as i32).map(|power| 10_f64.powi(power))
     }
 
+    /// Those of them that there is room to write, 1 among them.
+    fn labeled_powers(&self) -> impl Iterator<Item = f64> {
+        let decade = f64::from(SIZE.x) / (self.high - self.low);
+        let every = (f64::from(LABEL) / decade).ceil().max(1.0) as i32;
+        self.powers().filter(move |power| power.log10().round() as i32 % every == 0)
+    }
+
     /// Its numbers above the bars.
     pub fn heading(&self, ui: &mut Ui) {
         let size = vec2(SIZE.x, space::ROW_HEIGHT);
         let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
         let font = TextStyle::Small.resolve(ui.style());
-        for power in self.powers() {
+        for power in self.labeled_powers() {
             let x = self.x(rect, power).clamp(rect.left() + 8.0, rect.right() - 12.0);
             let text = format!("{} ×", significant(power));
             let at = pos2(x, rect.center().y);
@@ -109,7 +118,9 @@ mod tests {
         for value in [1.0, 3.0, 44.0] {
             assert!(rect.x_range().contains(axis.x(rect, value)), "{value}");
         }
-        assert!(axis.powers().eq([1.0, 10.0]));
+        assert!(axis.powers().eq([1.0, 10.0]) && axis.labeled_powers().eq([1.0, 10.0]));
+        let wide = Axis { low: -1.1, high: 4.4 };
+        assert!(wide.labeled_powers().eq([1.0, 100.0, 10_000.0]));
         let empty = Ranking { entries: Vec::new(), leave_on: None, worths: Vec::new() };
         assert!(Axis::over(&empty).high > 0.3);
     }
