@@ -80,8 +80,10 @@ impl Canvas {
     }
 
     /// Fills the rectangle between two corners, both of them in it.
-    pub fn fill(&mut self, corners: [Place; 2], color: [u8; 3]) -> Result<()> {
-        self.draw(&Rectangle::new(corners, style(color, 1).filled()))
+    pub fn fill(&mut self, [first, last]: [Place; 2], color: [u8; 3]) -> Result<()> {
+        // `plotters` leaves the last row and column out.
+        let end = (last.0 + 1, last.1 + 1);
+        self.draw(&Rectangle::new([first, end], style(color, 1).filled()))
     }
 
     /// Joins places by straight lines, `width` pixels wide.

@@ -115,8 +115,10 @@ impl Pane {
         }
         let middle = self.divider.map(|column| (left + column * zoom) as i32);
         if let Some(x) = middle {
-            canvas.fill([(x - 1, 0), (x + 1, shown.y as i32 - 1)], DARK)?;
-            canvas.fill([(x, 0), (x, shown.y as i32 - 1)], LIGHT)?;
+            for (beside, color) in [(-1, DARK), (1, DARK), (0, LIGHT)] {
+                let x = x + beside;
+                canvas.line(vec![(x, 0), (x, shown.y as i32 - 1)], color, 1)?;
+            }
         }
         let (low, high) = (left as i32, (left + shown.x) as i32);
         match (&self.names[..], middle) {
