@@ -25,7 +25,7 @@ const AGX_STOPS: [f32; 2] = [-12.473_93, 4.026_069];
 const AGX_INSET: Mat3A = Mat3A::from_cols(
     Vec3A::new(0.842_479_1, 0.042_328_24, 0.042_375_66),
     Vec3A::new(0.078_433_6, 0.878_468_6, 0.078_433_6),
-    Vec3A::new(0.079_223_745, 0.079_166_13, 0.879_142_97),
+    Vec3A::new(0.079_223_745, 0.079_166_13, 0.879_143),
 );
 /// AgX: the inverse of the inset.
 const AGX_OUTSET: Mat3A = Mat3A::from_cols(
@@ -107,7 +107,8 @@ mod tests {
             assert_eq!(at(-1.0), 0.0);
             assert!(at(f32::MAX) > 0.99, "{curve:?}");
             let values: Vec<f32> = (0..2000).map(|i| at(i as f32 * 0.01)).collect();
-            assert!(values.is_sorted(), "{curve:?}");
+            // Up to the last digit, where they are nearly flat.
+            assert!(values.windows(2).all(|pair| pair[1] > pair[0] - 1e-6), "{curve:?}");
         }
         let gray = ToneCurve::Filmic.apply(Rgb::splat(0.18)).x;
         assert!((gray - 0.267).abs() < 0.001, "{gray}");
