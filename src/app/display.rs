@@ -236,8 +236,8 @@ fn scale_and_span(Scale { low, high }: Scale) -> [f32; 4] {
 
 /// The colors of false color, linear.
 fn stop_colors() -> [[f32; 3]; STOPS] {
-    false_color::COLORS.map(|[r, g, b]| {
-        let [r, g, b, _] = egui::Rgba::from(egui::Color32::from_rgb(r, g, b)).to_array();
+    false_color::COLORS.map(|code| {
+        let [r, g, b, _] = egui::Rgba::from(color::of(code)).to_array();
         [r, g, b]
     })
 }

@@ -86,6 +86,12 @@ impl eframe::App for Window {
     }
 }
 
+/// The flame of the torch; the system's own icon should it be unreadable.
+fn icon() -> egui::IconData {
+    let png = include_bytes!("../../assets/icon.png");
+    eframe::icon_data::from_png_bytes(png).unwrap_or_default()
+}
+
 /// Opens the window on a scene, a volume or a snapshot (a path or `builtin:NAME`), or on the default scene, and
 /// returns when it is closed.
 ///
@@ -94,6 +100,7 @@ impl eframe::App for Window {
 pub fn run(source: Option<String>) -> Result<()> {
     let viewport = egui::ViewportBuilder::default()
         .with_title("Flambeau")
+        .with_icon(icon())
         .with_app_id("flambeau")
         .with_inner_size([1280.0, 800.0])
         .with_min_inner_size([720.0, 420.0])

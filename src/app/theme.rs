@@ -1,6 +1,7 @@
 //! The look of the window in one place: colors, spacing, type. Panels take from here and spell out
 //! none of their own. Everything but the accents is neutral gray, so that nothing tints the eye
 //! that judges the picture.
+#![allow(clippy::disallowed_methods, reason = "this is the place that spells colors out")]
 
 use egui::{Color32, Context, CornerRadius, FontFamily, FontId, Margin, Stroke, TextStyle, vec2};
 
@@ -50,6 +51,11 @@ pub mod color {
         Color32::from_rgb(120, 196, 96),
         Color32::from_rgb(104, 150, 240),
     ];
+    /// The color of an 8-bit sRGB code that means a number.
+    pub const fn of([r, g, b]: [u8; 3]) -> Color32 {
+        Color32::from_rgb(r, g, b)
+    }
+
     /// Something that failed.
     pub const ERROR: Color32 = Color32::from_rgb(232, 112, 98);
 }

@@ -70,14 +70,12 @@ fn every_curve_balance_and_channel_is_that_of_saved_pictures() {
 }
 
 #[test]
-fn white_balance_is_typed_undone_and_that_of_saved_pictures() {
+fn white_balance_is_set_undone_and_that_of_saved_pictures() {
     let Some(mut window) = open() else { return };
     let pixels = window.app().engine().picture().unwrap().pixels.clone();
-    let field = window.harness.get_by_role_and_label(Role::SpinButton, "White balance");
-    field.click();
+    let slider = window.harness.get_by_role_and_label(Role::Slider, "White balance");
+    slider.set_value_accesskit(2500.0);
     window.settle();
-    window.harness.get_by_role_and_label(Role::TextInput, "White balance").type_text("2500");
-    window.press(Modifiers::NONE, Key::Enter);
     assert_eq!(window.document().tone.white, 2500.0);
     assert_shown(&mut window, &pixels, Tone { white: 2500.0, ..Tone::default() });
     window.press(Modifiers::COMMAND, Key::Z);
@@ -99,7 +97,7 @@ fn a_key_exposes_for_the_picture() {
 fn layers_take_the_place_of_the_picture() {
     let Some(mut window) = open() else { return };
     for (layer, legend) in [
-        (Layer::Emission, None),
+        (Layer::Direct, None),
         (Layer::Indirect, None),
         (Layer::Depth, Some("Depth, length")),
         (Layer::Noise, Some("Standard error, gray")),

@@ -237,24 +237,24 @@ fn fire_that_lights_nothing_says_so() {
 
 #[test]
 fn probes_that_do_not_pay_say_so() {
-    let fog = r#"
+    let cloud = r#"
         [film]
-        size = [24, 16]
+        size = [48, 32]
         spp = 2
-        [strategy.advanced]
-        probe_count = 64
         [camera]
         position = [0, -4, 0]
         target = [0, 0, 0]
         [environment]
         radiance = 1.0
         [[volume]]
-        shape = "box"
+        shape = "noise"
         half_size = 1.0
-        density = { scale = 2.0 }
-        albedo = 0.5
+        frequency = 2.0
+        density = { scale = 6.0 }
+        albedo = 0.999
+        phase = { g = 0.8 }
     "#;
-    let Some(mut window) = Window::open(fog) else { return };
+    let Some(mut window) = Window::open(cloud) else { return };
     window.until_it_says("Not asked in this picture");
 }
 

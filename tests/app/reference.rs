@@ -241,6 +241,7 @@ fn dropped_pictures_are_opened_or_measured_against_as_one_chooses() {
     let other = window.folder.path().join("other.toml");
     std::fs::write(&other, BALL.replace("\"ball\"", "\"other\"")).unwrap();
     window.drop_file(other);
+    window.click(Role::Button, "Open without saving");
     window.until("the other scene is open", |app| app.yardstick().held().is_none());
     let gray = window.gray("gray.npy", [64, 48], 0.25);
     window.drop_file(gray);

@@ -1,8 +1,6 @@
 //! What the colors mean, in a corner of the picture.
 
-use egui::{
-    Align, Color32, Frame, Label, Layout, Margin, Rect, RichText, Ui, UiBuilder, pos2, vec2,
-};
+use egui::{Align, Frame, Label, Layout, Margin, Rect, RichText, Ui, UiBuilder, pos2, vec2};
 
 use super::cells::Cells;
 use super::{CellValue, Scale, overlay};
@@ -140,11 +138,7 @@ fn contents(ui: &mut Ui, legend: &Legend) {
         if colors == ColorKey::Stops {
             return stops(ui, bar, &legend.note);
         }
-        let color = |place| {
-            let [r, g, b] = colors.color(place);
-            Color32::from_rgb(r, g, b)
-        };
-        ui.painter().add(overlay::bar(bar, color));
+        ui.painter().add(overlay::bar(bar, |place| color::of(colors.color(place))));
         numbers(ui, colors.ends());
     }
     note(ui, &legend.note);
@@ -157,10 +151,10 @@ fn note(ui: &mut Ui, text: &str) {
 /// A color a stop.
 fn stops(ui: &mut Ui, bar: Rect, text: &str) {
     let width = bar.width() / false_color::COLORS.len() as f32;
-    for (index, [r, g, b]) in false_color::COLORS.into_iter().enumerate() {
+    for (index, code) in false_color::COLORS.into_iter().enumerate() {
         let left = bar.left() + index as f32 * width;
         let rect = Rect::from_min_size(pos2(left, bar.top()), vec2(width, bar.height()));
-        ui.painter().rect_filled(rect, 0.0, Color32::from_rgb(r, g, b));
+        ui.painter().rect_filled(rect, 0.0, color::of(code));
     }
     let reach = false_color::STOPS as f32;
     numbers(ui, [-reach, 0.0, reach]);

@@ -19,6 +19,8 @@ pub(super) struct Kept {
     writing: Vec<(PathBuf, Settings)>,
     /// What would lose changes, while it is asked about.
     pub(super) losing: Option<Losing>,
+    /// Whether it goes on as soon as they are saved.
+    saves_first: bool,
     /// Whether the changes may be lost, or the window close.
     allowed: bool,
     /// The title of the window.
@@ -29,8 +31,7 @@ impl Kept {
     /// A scene was opened.
     pub(super) fn opened(&mut self, settings: &Settings) {
         self.saved = settings.clone();
-        self.losing = None;
-        self.allowed = false;
+        (self.losing, self.saves_first, self.allowed) = (None, false, false);
     }
 
     /// A scene is being written to `path`.
@@ -97,21 +98,28 @@ impl App {
     pub(super) fn unsaved_row(&mut self, ui: &mut Ui) {
         let Some(losing) = self.kept.losing.clone() else { return };
         if !self.has_unsaved_changes() {
-            self.go_on(ui.ctx(), losing);
+            // Saved as was asked for, or else taken back.
+            match std::mem::take(&mut self.kept.saves_first) {
+                true => self.go_on(ui.ctx(), losing),
+                false => self.kept.losing = None,
+            }
             return;
         }
         let title = self.title();
         let row = egui::Panel::bottom("unsaved").frame(theme::panel_frame());
         match row.show(ui, |ui| unsaved::ask(ui, &title, &losing)).inner {
-            Some(Answer::Save) => self.ask(&ui.ctx().clone(), Purpose::SaveScene),
+            Some(Answer::Save) => {
+                self.kept.saves_first = true;
+                self.ask(&ui.ctx().clone(), Purpose::SaveScene);
+            }
             Some(Answer::Discard) => self.go_on(ui.ctx(), losing),
-            Some(Answer::Stay) => self.kept.losing = None,
+            Some(Answer::Stay) => (self.kept.losing, self.kept.saves_first) = (None, false),
             None => {}
         }
     }
 
     fn go_on(&mut self, ctx: &Context, losing: Losing) {
-        self.kept.losing = None;
+        (self.kept.losing, self.kept.saves_first) = (None, false);
         match losing {
             Losing::Open(source) => self.open(&source),
             Losing::Close => {
