@@ -12,7 +12,7 @@ use flambeau::{
 use glam::UVec2;
 use rayon::prelude::*;
 
-const SEEDS: u64 = 48;
+const SEEDS: u64 = 36;
 const SIDE: u32 = 24;
 
 /// A lamp, a fire and its smoke above a floor.
