@@ -109,11 +109,6 @@ pub fn apply(ctx: &Context) {
         style.explanation_tooltips = false;
         style.interaction.tooltip_delay = 0.4;
         style.interaction.selectable_labels = false;
-        // What is deleted from a list leaves its place to the next, on purpose.
-        #[cfg(debug_assertions)]
-        {
-            style.debug.warn_if_rect_changes_id = false;
-        }
     });
 }
 

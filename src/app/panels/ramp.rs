@@ -139,7 +139,12 @@ impl Editor {
             let is_gone = response.has_focus() && self.keys(ui, id, stops, index, span);
             paint_handle(ui, rect, &response, stop, self.selected == index);
             response.on_hover_text("Drag, or move with the arrow keys; Delete takes it out.");
-            index += usize::from(!is_gone);
+            if is_gone {
+                // The next one takes its place and its identity, in the next frame.
+                ui.ctx().request_repaint();
+                return;
+            }
+            index += 1;
         }
     }
 
