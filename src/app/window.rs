@@ -199,7 +199,7 @@ impl App {
         self.update_snapshots(&ctx);
         self.editor.begin_frame(&ctx);
         let mut commands = Command::pressed(&ctx);
-        if self.path_bar.is_some() || self.dropped.is_some() {
+        if self.path_bar.is_some() || self.dropped.is_some() || self.palette.is_some() {
             // The key closes what is open in front.
             commands.retain(|command| *command != Command::LivePicture);
         }
@@ -238,6 +238,7 @@ impl App {
                     self.viewport.zoom = Default::default();
                     self.sweep.forget();
                     self.notices = Notices::default();
+                    self.remember_file(&source);
                     self.source = self.name_of(source);
                     self.versus = None;
                     self.rectangle.remove();
@@ -248,7 +249,6 @@ impl App {
                         let text = format!("{}: {text}", self.title());
                         self.notices.push(Notice { level, text });
                     }
-                    self.remember_file();
                 }
                 News::Failed(text) => self.notices.failed(text),
                 News::Refused(text) => self.notices.refused(text),

@@ -209,6 +209,14 @@ fn a_snapshot_of_the_strip_is_gone_on_from() {
     window.click(Role::Button, "Open without saving");
     window.until_it_says("scene full: it goes on from 4 spp. The limit it had reached is lifted.");
     assert!(!window.has("Stored: "));
+    let remembered = window.folder.path().join("data").join("window.json");
+    let remembered: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(remembered).unwrap()).unwrap();
+    let recent = remembered["recent"].as_array().unwrap();
+    assert!(
+        recent.len() == 1,
+        "the snapshot is in the strip, and no file that was open: {recent:?}"
+    );
     assert_eq!(window.document().settings.volume[0].density.scale.gray(), Some(2.0));
     window.until("samples are added", |app| {
         let picture = app.engine().picture();

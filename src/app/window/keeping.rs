@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use egui::{Context, Ui, ViewportCommand};
 
 use super::App;
+use crate::app::engine::same_shot;
 use crate::app::files::Purpose;
 use crate::app::panels::unsaved::{self, Answer, Losing};
 use crate::app::theme;
@@ -52,12 +53,11 @@ impl Kept {
     /// Whether `settings` have changes that a file has not. Strategies are tried on and off all the
     /// time and change no picture, and a film that follows the window has no size of its own.
     fn misses(&self, settings: &Settings, keep_size: bool) -> bool {
-        let mut saved = self.saved.clone();
-        saved.strategy = settings.strategy;
+        let mut film = self.saved.film;
         if !keep_size {
-            saved.film.size = settings.film.size;
+            film.size = settings.film.size;
         }
-        saved != *settings
+        film != settings.film || !same_shot(&self.saved, settings)
     }
 }
 
@@ -129,9 +129,12 @@ impl App {
         }
     }
 
-    /// Notes the file that was opened, for the next run too.
-    pub(super) fn remember_file(&mut self) {
-        self.remembered.note(&self.source);
+    /// Notes the file that was opened, for the next run too. Snapshots have their strip.
+    pub(super) fn remember_file(&mut self, source: &str) {
+        if self.snapshots.name_of(Path::new(source)).is_some() {
+            return;
+        }
+        self.remembered.note(source);
         if let Err(error) = self.write_remembered() {
             self.notices.failed(error.to_string());
         }
