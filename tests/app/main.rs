@@ -241,6 +241,8 @@ fn probes_that_do_not_pay_say_so() {
         [film]
         size = [48, 32]
         spp = 2
+        [strategy.advanced]
+        probe_count = 64
         [camera]
         position = [0, -4, 0]
         target = [0, 0, 0]
