@@ -167,6 +167,12 @@ pub fn few_guides() -> Vec<Strategy> {
     every_guide().into_iter().filter(|s| all(&s.advanced) || none(&s.advanced)).collect()
 }
 
+/// Every third of some settings. Rows of [`finer`] come in eights, so that each row and each toggle
+/// is still among them; scenes with known values take these, and one scene takes all.
+pub fn a_third(settings: Vec<Strategy>) -> Vec<Strategy> {
+    settings.into_iter().step_by(3).collect()
+}
+
 /// Every combination of the toggles with each row of [`finer`], those that are the same by
 /// definition once: ratio tracking overrides decoupling, and a key without its toggle says nothing.
 pub fn every_setting() -> Vec<Strategy> {
@@ -361,9 +367,9 @@ pub fn measure_enough(scene: &Scene, most: u32) -> Estimate {
     measure_to(scene, most, POWER, PathSample::beauty)
 }
 
-/// The same to half of [`POWER`], to hold others against.
+/// The same to 0.7 of [`POWER`], to hold others against.
 pub fn measure_closely(scene: &Scene, most: u32) -> Estimate {
-    measure_to(scene, most, 0.5 * POWER, PathSample::beauty)
+    measure_to(scene, most, 0.7 * POWER, PathSample::beauty)
 }
 
 /// The mean over the whole film of what `of` takes from each path, by so many paths as bring its

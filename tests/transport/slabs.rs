@@ -102,15 +102,14 @@ fn transmittance_by_every_guide() {
     verdicts.finish();
 }
 
+/// Each combination meets two or three of the rows.
 #[test]
 fn emissivity_in_every_combination_of_toggles() {
     let mut verdicts = Verdicts::default();
-    for [g, albedo, depth, _, _, emissivity] in ROWS {
-        if emissivity == 0.0 {
-            continue;
-        }
+    let rows = ROWS.into_iter().filter(|row| row[5] > 0.0);
+    for (row, [g, albedo, depth, _, _, emissivity]) in rows.enumerate() {
         let scene = build(&slab(g, albedo, depth, r#"emission = { mode = "source", le = 1.0 }"#));
-        for strategy in half_of_strategies() {
+        for strategy in half_of_strategies().into_iter().skip(row % 2).step_by(2) {
             let label = format!("ε of g {g}, albedo {albedo}, depth {depth}, {}", name(&strategy));
             let estimate = measure_enough(
                 &with_strategy(&scene, strategy),
@@ -123,7 +122,7 @@ fn emissivity_in_every_combination_of_toggles() {
 }
 
 /// Three rows in one slab, a channel each, made of cells and wide enough to be endless: density
-/// and albedo are chromatic, and looks at its glow come from inside it. In every third of the settings
+/// and albedo are chromatic, and looks at its glow come from inside it. In every fifth of the settings
 /// whose looks a vertex inside fire allows.
 #[test]
 fn emissivity_channel_by_channel() {
@@ -151,7 +150,7 @@ fn emissivity_channel_by_channel() {
         "#
     ));
     let mut verdicts = Verdicts::default();
-    for setting in every_line_setting().into_iter().filter(|setting| setting.nee).step_by(3) {
+    for setting in every_line_setting().into_iter().filter(|setting| setting.nee).step_by(5) {
         let estimate = measure_enough(&with_strategy(&scene, setting), 1_000_000);
         for (channel, expected) in expected.into_iter().enumerate() {
             verdicts.check_channel(&full_name(&setting), &estimate, channel, expected);
@@ -179,13 +178,14 @@ fn half_spaces() {
     verdicts.finish();
 }
 
-/// In a white slab nothing is lost: R + T = 1, each path counted on one of the two sides.
+/// In a white slab nothing is lost: R + T = 1, each path counted on one of the two sides. Each
+/// combination meets one or two of the slabs.
 #[test]
 fn a_conservative_slab_keeps_everything() {
     let mut verdicts = Verdicts::default();
-    for (g, depth) in [(0.0, 16.0), (0.85, 4.0), (-0.5, 2.0)] {
+    for (row, (g, depth)) in [(0.0, 16.0), (0.85, 4.0), (-0.5, 2.0)].into_iter().enumerate() {
         let scene = build(&slab(g, 1.0, depth, "[environment]\nradiance = 1.0"));
-        for strategy in half_of_strategies() {
+        for strategy in half_of_strategies().into_iter().skip(row % 2).step_by(2) {
             let label = format!("white slab, g {g}, depth {depth}, {}", name(&strategy));
             let estimate = measure_enough(&with_strategy(&scene, strategy), 200_000);
             verdicts.check(&label, &estimate, 1.0);
