@@ -1,5 +1,8 @@
-//! The picture on the graphics card: upload when there is a new one, and the draw call that
-//! exposes, curves and codes it, or colors its numbers (`display.wgsl`).
+//! The picture on the graphics card: upload when there is a new one, the draw call that exposes,
+//! curves and codes it, or colors its numbers (`display.wgsl`), and the copy to the window.
+
+mod canvas;
+mod pipelines;
 
 use std::num::NonZeroU64;
 use std::sync::Arc;
@@ -10,8 +13,10 @@ use glam::{UVec2, Vec2};
 use super::diagnostics::{STOPS, Scale, stops};
 use super::theme::color;
 use super::zoom::Placement;
-use crate::image::tone::{Channel, Tone, ToneCurve, false_color};
+use crate::image::tone::{Channel, Tone, false_color};
 use crate::render::Picture;
+use canvas::{Canvas, Place};
+use pipelines::{Pipelines, Variant};
 
 /// `View` of the shader.
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
@@ -19,10 +24,10 @@ use crate::render::Picture;
 struct View {
     origin: [f32; 2],
     step: f32,
-    channel: u32,
+    /// Padding, as the shader aligns what follows.
+    unused: u32,
     size: [u32; 2],
-    curve: u32,
-    encode: u32,
+    canvas: [i32; 2],
     surround: [f32; 4],
     scale: [f32; 4],
     exposed_from_linear: [[f32; 4]; 3],
@@ -81,9 +86,8 @@ impl Source {
 
 /// What the draw call needs on the graphics card; lives among egui's callback resources.
 struct Display {
-    pipeline: wgpu::RenderPipeline,
+    pipelines: Pipelines,
     layout: wgpu::BindGroupLayout,
-    encode: bool,
     panes: [Pane; PANES],
 }
 
@@ -91,6 +95,9 @@ struct Display {
 struct Pane {
     view: wgpu::Buffer,
     shown: Option<Shown>,
+    canvas: Option<Canvas>,
+    /// What is drawn on the canvas, if anything.
+    drawn: Option<(View, Variant)>,
 }
 
 /// The uploaded picture.
@@ -118,47 +125,41 @@ pub struct Shot {
     pub picture: Arc<Picture>,
     /// What of it.
     pub look: Look,
-    /// Where it lies, from `corner`.
+    /// Where it lies, from the corner of `area`.
     pub placement: Placement,
-    /// A corner of the window in framebuffer pixels.
-    pub corner: Vec2,
+    /// The part of the window that it is laid out in, in points.
+    pub area: egui::Rect,
     /// Which of the pictures shown at once it is, below [`PANES`].
     pub pane: usize,
 }
 
 /// Shows a picture where it lies in `rect`.
 pub fn paint(painter: &egui::Painter, rect: egui::Rect, shot: Shot) {
-    let Shot { picture, look, placement, corner, pane } = shot;
-    let corner = corner + placement.corner;
-    let callback = PaintPicture { picture, corner, placement, look, pane };
-    painter.add(egui_wgpu::Callback::new_paint_callback(rect, callback));
+    painter.add(egui_wgpu::Callback::new_paint_callback(rect, shot));
 }
 
-struct PaintPicture {
-    picture: Arc<Picture>,
-    /// The picture's upper left corner in the framebuffer.
-    corner: Vec2,
-    placement: Placement,
-    look: Look,
-    pane: usize,
-}
-
-impl CallbackTrait for PaintPicture {
+impl CallbackTrait for Shot {
     fn prepare(
         &self,
         device: &wgpu::Device,
         queue: &wgpu::Queue,
-        _screen: &ScreenDescriptor,
-        _encoder: &mut wgpu::CommandEncoder,
+        screen: &ScreenDescriptor,
+        encoder: &mut wgpu::CommandEncoder,
         resources: &mut CallbackResources,
     ) -> Vec<wgpu::CommandBuffer> {
-        if let Some(display) = resources.get_mut::<Display>() {
-            let view = self.view(display.encode);
-            let Display { layout, panes, .. } = display;
-            if let Some(pane) = panes.get_mut(self.pane) {
-                pane.upload(device, queue, layout, &self.picture, self.look.source());
-                queue.write_buffer(&pane.view, 0, bytemuck::bytes_of(&view));
-            }
+        let Some(display) = resources.get_mut::<Display>() else { return Vec::new() };
+        let Display { layout, panes, pipelines } = display;
+        let Some(pane) = panes.get_mut(self.pane) else { return Vec::new() };
+        let place = Place::of(&self.area, screen);
+        let view = self.view(&place, screen.pixels_per_point);
+        let variant = Variant::new(self.look, view.step);
+        let is_new = pane.upload(device, queue, layout, &self.picture, self.look.source());
+        if is_new || !pane.shows(&view, variant, place.size) {
+            queue.write_buffer(&pane.view, 0, bytemuck::bytes_of(&view));
+            let format = pipelines.canvas_format();
+            let pipeline = pipelines.of(device, variant);
+            pane.draw(device, encoder, (layout, pipeline), (place.size, format));
+            pane.drawn = Some((view, variant));
         }
         Vec::new()
     }
@@ -170,19 +171,22 @@ impl CallbackTrait for PaintPicture {
         resources: &CallbackResources,
     ) {
         let Some(display) = resources.get::<Display>() else { return };
-        let Some(Pane { shown: Some(shown), .. }) = display.panes.get(self.pane) else { return };
-        pass.set_pipeline(&display.pipeline);
-        pass.set_bind_group(0, &shown.bindings, &[]);
+        let canvas = display.panes.get(self.pane).and_then(|pane| pane.canvas.as_ref());
+        let Some(canvas) = canvas else { return };
+        pass.set_pipeline(display.pipelines.copy());
+        pass.set_bind_group(0, canvas.bindings(), &[]);
         pass.draw(0..3, 0..1);
     }
 }
 
-impl PaintPicture {
-    fn view(&self, encode: bool) -> View {
+impl Shot {
+    fn view(&self, place: &Place, pixels_per_point: f32) -> View {
+        let area = Vec2::new(self.area.min.x, self.area.min.y) * pixels_per_point;
+        let corner = area + self.placement.corner;
         let surround = egui::Rgba::from(color::SURROUND);
-        let (tone, curve, scale) = match self.look {
-            Look::Picture(tone) | Look::Light(tone) => (tone, curve_index(tone.curve), [0.0; 4]),
-            Look::Numbers(scale) => (Tone::default(), RAMP, scale_and_span(scale)),
+        let (tone, scale) = match self.look {
+            Look::Picture(tone) | Look::Light(tone) => (tone, [0.0; 4]),
+            Look::Numbers(scale) => (Tone::default(), scale_and_span(scale)),
         };
         let padded_columns =
             tone.exposed_from_linear().to_cols_array_2d().map(|[x, y, z]| [x, y, z, 0.0]);
@@ -191,41 +195,16 @@ impl PaintPicture {
             _ => *stops(),
         };
         View {
-            origin: (-self.corner / self.placement.scale).into(),
+            origin: (-corner / self.placement.scale).into(),
             step: 1.0 / self.placement.scale,
-            channel: channel_index(tone.channel),
+            unused: 0,
             size: self.picture.size.into(),
-            curve,
-            encode: u32::from(encode),
+            canvas: place.corner,
             surround: surround.to_array(),
             scale,
             exposed_from_linear: padded_columns,
             ramp: ramp.map(|[r, g, b]| [r, g, b, 1.0]),
         }
-    }
-}
-
-/// What the shader calls the ramp.
-const RAMP: u32 = 2;
-
-/// What the shader calls a curve.
-fn curve_index(curve: ToneCurve) -> u32 {
-    match curve {
-        ToneCurve::Linear => 0,
-        ToneCurve::Filmic => 1,
-        ToneCurve::Agx => 3,
-    }
-}
-
-/// What the shader calls a channel.
-fn channel_index(channel: Channel) -> u32 {
-    match channel {
-        Channel::Color => 0,
-        Channel::Red => 1,
-        Channel::Green => 2,
-        Channel::Blue => 3,
-        Channel::Luminance => 4,
-        Channel::FalseColor => 5,
     }
 }
 
@@ -244,36 +223,10 @@ fn stop_colors() -> [[f32; 3]; STOPS] {
 
 impl Display {
     fn new(device: &wgpu::Device, target: wgpu::TextureFormat) -> Self {
-        let shader = device.create_shader_module(wgpu::include_wgsl!("display.wgsl"));
         let layout = bind_group_layout(device);
-        let pipeline_layout = device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some("display"),
-            bind_group_layouts: &[Some(&layout)],
-            immediate_size: 0,
-        });
-        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("display"),
-            layout: Some(&pipeline_layout),
-            vertex: wgpu::VertexState {
-                module: &shader,
-                entry_point: Some("vertex"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                buffers: &[],
-            },
-            primitive: wgpu::PrimitiveState::default(),
-            depth_stencil: None,
-            multisample: wgpu::MultisampleState::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &shader,
-                entry_point: Some("fragment"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                targets: &[Some(target.into())],
-            }),
-            multiview_mask: None,
-            cache: None,
-        });
+        let pipelines = Pipelines::new(device, &layout, target);
         let panes = std::array::from_fn(|_| Pane::new(device));
-        Self { pipeline, layout, encode: !target.is_srgb(), panes }
+        Self { pipelines, layout, panes }
     }
 }
 
@@ -285,10 +238,32 @@ impl Pane {
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        Self { view, shown: None }
+        Self { view, shown: None, canvas: None, drawn: None }
     }
 
-    /// Brings what is shown of `picture` onto the graphics card unless it is there already.
+    /// Whether the canvas shows just that already.
+    fn shows(&self, view: &View, variant: Variant, size: UVec2) -> bool {
+        let is_drawn = |(drawn, by): &(View, Variant)| drawn == view && *by == variant;
+        self.drawn.as_ref().is_some_and(is_drawn)
+            && self.canvas.as_ref().is_some_and(|canvas| canvas.is_of(size))
+    }
+
+    /// Draws the uploaded picture on the canvas, which has that size and format.
+    fn draw(
+        &mut self,
+        device: &wgpu::Device,
+        encoder: &mut wgpu::CommandEncoder,
+        (layout, pipeline): (&wgpu::BindGroupLayout, &wgpu::RenderPipeline),
+        (size, format): (UVec2, wgpu::TextureFormat),
+    ) {
+        let Some(shown) = &self.shown else { return };
+        let old = self.canvas.take().filter(|canvas| canvas.is_of(size));
+        let canvas = old.unwrap_or_else(|| Canvas::new(device, layout, (size, format), &self.view));
+        canvas.draw(encoder, pipeline, &shown.bindings);
+        self.canvas = Some(canvas);
+    }
+
+    /// Brings what is shown of `picture` onto the graphics card; false where it is there already.
     fn upload(
         &mut self,
         device: &wgpu::Device,
@@ -296,12 +271,12 @@ impl Pane {
         layout: &wgpu::BindGroupLayout,
         picture: &Arc<Picture>,
         source: Source,
-    ) {
+    ) -> bool {
         let format = source.format();
         let is_there =
             |shown: &Shown| Arc::ptr_eq(&shown.picture, picture) && shown.source == source;
         if self.shown.as_ref().is_some_and(is_there) {
-            return;
+            return false;
         }
         let fits =
             |shown: &Shown| shown.picture.size == picture.size && shown.source.format() == format;
@@ -321,6 +296,7 @@ impl Pane {
             wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
         );
         self.shown = Some(Shown { picture: picture.clone(), source, texture, bindings });
+        true
     }
 
     fn allocate(
@@ -341,19 +317,29 @@ impl Pane {
             view_formats: &[],
         });
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
-        let bindings = device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("display"),
-            layout,
-            entries: &[
-                wgpu::BindGroupEntry { binding: 0, resource: self.view.as_entire_binding() },
-                wgpu::BindGroupEntry {
-                    binding: 1,
-                    resource: wgpu::BindingResource::TextureView(&view),
-                },
-            ],
-        });
+        let bindings = bind(device, layout, &self.view, &view);
         (texture, bindings)
     }
+}
+
+/// Binds how a texture is looked at, and the texture.
+fn bind(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    view: &wgpu::Buffer,
+    texture: &wgpu::TextureView,
+) -> wgpu::BindGroup {
+    device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("display"),
+        layout,
+        entries: &[
+            wgpu::BindGroupEntry { binding: 0, resource: view.as_entire_binding() },
+            wgpu::BindGroupEntry {
+                binding: 1,
+                resource: wgpu::BindingResource::TextureView(texture),
+            },
+        ],
+    })
 }
 
 fn bind_group_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {

@@ -1,23 +1,29 @@
-// Shows the picture, one framebuffer pixel at a time: exposure, tone curve and sRGB coding, or one
-// number a pixel as a color of a ramp.
+// Draws the picture on a canvas, one framebuffer pixel at a time: exposure, tone curve and sRGB
+// coding, or one number a pixel as a color of a ramp. And copies that to the window.
 // Balance, curves and false color mirror src/image/tone; a test holds them against each other.
 
-// Picture pixels per framebuffer pixel from which on a grid is drawn.
-const GRID_FROM: f32 = 0.0626;
+// What is settled for a whole picture when its pipeline is made.
+
+// 0: linear, 1: filmic, 2: the ramp, 3: AgX.
+override CURVE: u32;
+// 0: color, 1 to 3: red, green, blue, 4: luminance, 5: false color.
+override CHANNEL: u32;
+// Whether a framebuffer pixel covers more than one of the picture.
+override IS_SHRUNK: bool;
+// Whether lines are drawn between pixels.
+override HAS_GRID: bool;
+// Whether the framebuffer does not code sRGB by itself.
+override ENCODES: bool;
 
 struct View {
     // Picture position, in picture pixels, of the framebuffer's upper left corner.
     origin: vec2f,
     // Picture pixels per framebuffer pixel.
     step: f32,
-    // 0: color, 1 to 3: red, green, blue, 4: luminance, 5: false color.
-    channel: u32,
     // Size of the picture in pixels; zero where there is none yet.
     size: vec2u,
-    // 0: linear, 1: filmic, 2: the ramp, 3: AgX.
-    curve: u32,
-    // 1 where the framebuffer does not code sRGB by itself.
-    encode: u32,
+    // The framebuffer's pixel where the canvas begins.
+    canvas: vec2i,
     // What lies around the picture, linear.
     surround: vec4f,
     // Logarithm of the number at the ramp's start, and one over that of the ratio of its ends.
@@ -42,10 +48,10 @@ fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
 // texel when zoomed in, up to 6 x 6 of them when zoomed out.
 fn footprint(center: vec2f) -> vec3f {
     let last = vec2i(view.size) - 1;
-    let taps = clamp(i32(ceil(view.step - 0.001)), 1, 6);
-    if taps == 1 {
+    if !IS_SHRUNK {
         return textureLoad(picture, clamp(vec2i(floor(center)), vec2i(0), last), 0).rgb;
     }
+    let taps = clamp(i32(ceil(view.step - 0.001)), 2, 6);
     let low = center - 0.5 * view.step;
     var sum = vec3f(0.0);
     for (var y = 0; y < taps; y++) {
@@ -83,7 +89,7 @@ fn agx(color: vec3f) -> vec3f {
 
 // What of an exposed color is shown: all of it, or one channel of it as gray.
 fn channel_of(color: vec3f) -> vec3f {
-    switch view.channel {
+    switch CHANNEL {
         case 1u: { return color.rrr; }
         case 2u: { return color.ggg; }
         case 3u: { return color.bbb; }
@@ -107,7 +113,7 @@ fn shown(color: vec3f) -> vec3f {
     let columns = view.exposed_from_linear;
     let balance = mat3x3f(columns[0].rgb, columns[1].rgb, columns[2].rgb);
     let exposed = balance * clamp(color, vec3f(-1.0e20), vec3f(1.0e20));
-    if view.channel == 5u {
+    if CHANNEL == 5u {
         return false_color(luminance(exposed));
     }
     return tone(channel_of(exposed));
@@ -115,11 +121,11 @@ fn shown(color: vec3f) -> vec3f {
 
 // The tone curve, from exposed linear values to display-linear ones.
 fn tone(color: vec3f) -> vec3f {
-    if view.curve == 0u {
+    if CURVE == 0u {
         return color;
     }
     let x = clamp(color, vec3f(0.0), vec3f(1.0e4));
-    if view.curve == 3u {
+    if CURVE == 3u {
         return agx(x);
     }
     return x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14);
@@ -147,22 +153,28 @@ fn srgb(linear: vec3f) -> vec3f {
 
 @fragment
 fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    let at = view.origin + position.xy * view.step;
+    let at = view.origin + (position.xy + vec2f(view.canvas)) * view.step;
     var color = view.surround.rgb;
     if all(at >= vec2f(0.0)) && all(at < vec2f(view.size)) {
-        if view.curve == 2u {
+        if CURVE == 2u {
             color = ramp(footprint(at).r);
         } else {
             color = shown(footprint(at));
         }
         // Lines between pixels that are large enough.
-        if view.step <= GRID_FROM && any(fract(at) < vec2f(view.step)) {
+        if HAS_GRID && any(fract(at) < vec2f(view.step)) {
             color = mix(clamp(color, vec3f(0.0), vec3f(1.0)), vec3f(0.05), 0.5);
         }
     }
     color = clamp(color, vec3f(0.0), vec3f(1.0));
-    if view.encode == 1u {
+    if ENCODES {
         color = srgb(color);
     }
     return vec4f(color, 1.0);
+}
+
+// The canvas, pixel by pixel.
+@fragment
+fn copy(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    return textureLoad(picture, vec2i(position.xy) - view.canvas, 0);
 }

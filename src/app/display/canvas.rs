@@ -1,0 +1,95 @@
+//! What a pane shows, drawn when it changes and copied to the window in each frame. The window is
+//! drawn far more often than there is a new picture, and a software driver feels every pixel that
+//! is exposed and curved.
+
+use egui::Rect;
+use egui::epaint::ViewportInPixels;
+use glam::UVec2;
+
+/// The pixels of the framebuffer that a part of the window covers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Place {
+    /// Its upper left pixel.
+    pub corner: [i32; 2],
+    /// Its width and height.
+    pub size: UVec2,
+}
+
+impl Place {
+    /// Of a rectangle in points, on a screen of that size and as many pixels a point.
+    pub fn of(rect: &Rect, screen: &egui_wgpu::ScreenDescriptor) -> Self {
+        let place =
+            ViewportInPixels::from_points(rect, screen.pixels_per_point, screen.size_in_pixels);
+        let size = [place.width_px, place.height_px].map(|side| side.max(1) as u32);
+        Self { corner: [place.left_px, place.top_px], size: size.into() }
+    }
+}
+
+/// The texture that a pane is drawn on.
+pub(super) struct Canvas {
+    size: UVec2,
+    target: wgpu::TextureView,
+    bindings: wgpu::BindGroup,
+}
+
+impl Canvas {
+    /// An empty one. `view` holds how it lies in the window.
+    pub fn new(
+        device: &wgpu::Device,
+        layout: &wgpu::BindGroupLayout,
+        (size, format): (UVec2, wgpu::TextureFormat),
+        view: &wgpu::Buffer,
+    ) -> Self {
+        let texture = device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("canvas"),
+            size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::RENDER_ATTACHMENT,
+            view_formats: &[],
+        });
+        let target = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let bindings = super::bind(device, layout, view, &target);
+        Self { size, target, bindings }
+    }
+
+    /// Whether it has that size.
+    pub fn is_of(&self, size: UVec2) -> bool {
+        self.size == size
+    }
+
+    /// What copies it to the window.
+    pub fn bindings(&self) -> &wgpu::BindGroup {
+        &self.bindings
+    }
+
+    /// Draws on it, with a pipeline and what that reads.
+    pub fn draw(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        pipeline: &wgpu::RenderPipeline,
+        bindings: &wgpu::BindGroup,
+    ) {
+        let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("canvas"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &self.target,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                    store: wgpu::StoreOp::Store,
+                },
+            })],
+            depth_stencil_attachment: None,
+            timestamp_writes: None,
+            occlusion_query_set: None,
+            multiview_mask: None,
+        });
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(0, bindings, &[]);
+        pass.draw(0..3, 0..1);
+    }
+}
