@@ -8,12 +8,29 @@ use crate::error::{Error, Result};
 /// The scene that opens when none is named.
 pub const DEFAULT_SCENE: &str = "builtin:torch";
 
-const SCENES: &[(&str, &str)] = &[("torch", include_str!("../../scenes/torch.toml"))];
+const SCENES: &[(&str, &str)] = &[
+    ("torch", include_str!("../../scenes/torch.toml")),
+    ("campfire", include_str!("../../scenes/campfire.toml")),
+    ("explosion", include_str!("../../scenes/explosion.toml")),
+    ("fog", include_str!("../../scenes/fog.toml")),
+    ("cloud", include_str!("../../scenes/cloud.toml")),
+    ("plume", include_str!("../../scenes/plume.toml")),
+    ("street", include_str!("../../scenes/street.toml")),
+];
 
 const VOLUMES: &[(&str, &[u8])] = &[
     ("torch_hd", include_bytes!("../../assets/torch_hd.vdb")),
+    ("campfire_hd", include_bytes!("../../assets/campfire_hd.vdb")),
+    ("explosion_hd", include_bytes!("../../assets/explosion_hd.vdb")),
+    ("fog", include_bytes!("../../assets/fog.vdb")),
+    ("cloud", include_bytes!("../../assets/cloud.vdb")),
     ("plume", include_bytes!("../../assets/plume.vdb")),
 ];
+
+/// The names of the embedded scenes, the default one first; `builtin:NAME` opens them.
+pub fn scenes() -> impl Iterator<Item = &'static str> {
+    SCENES.iter().map(|(name, _)| *name)
+}
 
 /// The text of the embedded scene of that name, `builtin:` included.
 pub(super) fn scene(name: &str) -> Option<&'static str> {

@@ -33,7 +33,7 @@ pub use build::{build, camera};
 pub use cache::VolumeCache;
 pub use conventions::{Program, upright};
 pub use describe::{FileDescription, GridDescription, VoxelDescription, describe};
-pub use embedded::DEFAULT_SCENE;
+pub use embedded::{DEFAULT_SCENE, scenes as embedded_scenes};
 pub use fingerprints::fingerprints;
 pub use frame::frame;
 pub use guess::{About, Note};
