@@ -17,9 +17,9 @@ use super::viewport::Shown;
 use super::yardstick::Measure;
 use crate::error::Result;
 use crate::image::tone::Tone;
-use crate::render::Picture;
-use crate::render::compare::{Area, Comparison, NoiseHistory};
+use crate::render::compare::{Comparison, NoiseHistory};
 use crate::render::session::{Seat, Sharing};
+use crate::render::{Area, Picture};
 use maps::{Difference, Map, MapKind, Noise};
 use part::{Part, PartTask};
 
@@ -191,6 +191,13 @@ impl Duel {
         }
     }
 
+    /// Gives all its samples to the pixels of `area`, or to all pixels.
+    pub fn focus(&mut self, area: Option<Area>) {
+        if let Some(rival) = &mut self.rival {
+            rival.focus(area);
+        }
+    }
+
     /// Throws its samples away.
     pub fn restart(&mut self) {
         if let Some(rival) = &mut self.rival {
@@ -276,6 +283,9 @@ impl Duel {
         let pictures =
             self.pictures(engine).filter(|pictures| pictures[0].size == pictures[1].size);
         self.note(pictures.as_ref());
+        // Before every pixel has a sample there is nothing to say, and to look would take time from
+        // getting there.
+        let pictures = pictures.filter(|sides| sides.iter().all(|picture| picture.complete));
         let same = |a: &[Arc<Picture>; 2], b: &[Arc<Picture>; 2]| {
             Arc::ptr_eq(&a[0], &b[0]) && Arc::ptr_eq(&a[1], &b[1])
         };

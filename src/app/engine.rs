@@ -11,7 +11,7 @@ use super::notices::Notice;
 use super::prober::Prober;
 use crate::error::{Error, Result};
 use crate::render::publish::Extras;
-use crate::render::{Layer, Picture, Resume, Session};
+use crate::render::{Area, Layer, Picture, Resume, Session};
 use crate::scene::settings::FilmSettings;
 use crate::scene::{Note, Settings, VolumeCache};
 use crate::transport::Scene;
@@ -66,6 +66,8 @@ pub struct Engine {
     /// Whether it waits for something else that needs the machine.
     held: bool,
     extras: Extras,
+    /// The pixels that get all samples.
+    area: Option<Area>,
     /// Whether what was built is another engine's.
     is_fresh: bool,
     picture: Option<Arc<Picture>>,
@@ -139,6 +141,7 @@ impl Engine {
             paused: false,
             held: false,
             extras: Extras::default(),
+            area: None,
             is_fresh: false,
             picture: None,
             resume: None,
@@ -252,6 +255,14 @@ impl Engine {
         if self.extras != extras {
             self.extras = extras;
             self.session.set_extras(extras);
+        }
+    }
+
+    /// Gives all samples to the pixels of `area`, or to all pixels.
+    pub fn focus(&mut self, area: Option<Area>) {
+        if self.area != area {
+            self.area = area;
+            self.session.focus(area);
         }
     }
 

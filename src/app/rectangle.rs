@@ -5,7 +5,7 @@ use glam::{UVec2, Vec2};
 
 use super::theme::color;
 use super::viewport::View;
-use crate::render::compare::Area;
+use crate::render::Area;
 
 /// The rectangle and the hand that draws it. No edit of the scene, so that undo leaves it alone.
 #[derive(Debug, Default)]
@@ -14,6 +14,8 @@ pub struct Rectangle {
     armed: bool,
     /// What it covers of a picture of this size.
     chosen: Option<(Area, UVec2)>,
+    /// Whether it gets all samples, and the rest of the picture none.
+    pub is_alone: bool,
     /// Where the drag under way began, in pixels of the picture that lies there.
     from: Option<(Vec2, View)>,
 }
@@ -61,6 +63,12 @@ impl Rectangle {
         Some(Area { first, size: (end - first).max(UVec2::ONE) }.within(size))
     }
 
+    /// The pixels of a film of `size` that get all samples; `None`: all do.
+    pub fn alone(&self, size: UVec2) -> Option<Area> {
+        // While the hand draws it, its size says nothing yet.
+        self.area(size).filter(|_| self.is_alone && self.from.is_none())
+    }
+
     /// Lets the hand draw it in the picture of `view`, which is under the pointer. Whether it takes
     /// the drag, so that nobody else should.
     pub fn draw(&mut self, ui: &Ui, response: &Response, view: Option<&View>) -> bool {
@@ -94,7 +102,8 @@ impl Rectangle {
         let painter = ui.painter_at(view.rect);
         let dark = Stroke::new(1.0, color::WELL);
         painter.rect_stroke(rect.expand(1.0), 0.0, dark, StrokeKind::Outside);
-        painter.rect_stroke(rect, 0.0, Stroke::new(1.0, color::TEXT_STRONG), StrokeKind::Outside);
+        let light = if self.is_alone { color::ACCENT } else { color::TEXT_STRONG };
+        painter.rect_stroke(rect, 0.0, Stroke::new(1.0, light), StrokeKind::Outside);
     }
 }
 

@@ -16,8 +16,8 @@ use crate::image::ramp;
 use crate::image::sheet::{self, Pane, Sheet, Table};
 use crate::image::tone::Tone;
 use crate::math::Rgb;
+use crate::render::Area;
 use crate::render::Picture;
-use crate::render::compare::Area;
 
 /// Everything that is written.
 pub struct SavedView {

@@ -6,7 +6,6 @@
 //! film and B for the second.
 
 mod agreement;
-mod area;
 mod history;
 pub mod maps;
 mod speed;
@@ -15,10 +14,10 @@ mod tally;
 use rayon::prelude::*;
 
 pub use agreement::{ALARM, Agreement, Difference, FEWEST_SAMPLES, Verdict};
-pub use area::Area;
 pub use history::NoiseHistory;
 pub use speed::SpeedUp;
 
+use super::area::Area;
 use super::film::Film;
 use super::publish::Picture;
 use tally::{Source, Tally};
@@ -54,7 +53,10 @@ impl Side {
             area.blocks().par_iter().map(|block| Tally::of(picture, block)).collect();
         let whole = tallies.iter().fold(Tally::default(), |sum, tally| sum.plus(tally));
         let stats = &picture.stats;
-        Self { samples_per_pixel: stats.samples_per_pixel, ..whole.side(stats.cpu_seconds) }
+        let side = whole.side(stats.cpu_seconds);
+        // Where the area gets all samples, it has more than the picture has on average.
+        let samples_per_pixel = stats.samples_per_pixel.max(side.samples_per_pixel);
+        Self { samples_per_pixel, ..side }
     }
 
     /// Of a film on which the threads spent so many seconds of CPU time.

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::time::Instant;
 
+use super::area::Area;
 use super::estimate::samples_per_pixel;
 use super::film::Film;
 use super::pool::{Failure, Pool};
@@ -15,6 +16,8 @@ pub struct Engine {
     sampler: Arc<dyn PixelSampler>,
     film: Film,
     schedule: Schedule,
+    /// The pixels that get all samples.
+    area: Option<Area>,
     seconds: f64,
     cpu_seconds: f64,
 }
@@ -45,7 +48,18 @@ impl Engine {
     ) -> Self {
         let (passes, _) = film.sample_range();
         let schedule = Schedule::new(film.size(), passes, limits, seconds_per_path);
-        Self { sampler, film, schedule, seconds: 0.0, cpu_seconds: 0.0 }
+        Self { sampler, film, schedule, area: None, seconds: 0.0, cpu_seconds: 0.0 }
+    }
+
+    /// Gives all samples to the pixels of `area` once every pixel has one, or to all pixels.
+    pub fn focus(&mut self, area: Option<Area>) {
+        let film = &self.film;
+        self.area = area.map(|area| area.within(film.size())).filter(|area| area.pixels() > 0);
+        let passes = match self.area {
+            Some(area) => film.fewest_samples(area),
+            None => film.sample_range().0,
+        };
+        self.schedule.focus(self.area, passes);
     }
 
     /// Throws the samples away and begins again with another sampler.
@@ -53,6 +67,7 @@ impl Engine {
         self.film.clear();
         let (limits, cost) = (self.schedule.limits(), self.schedule.seconds_per_path());
         self.schedule = Schedule::new(self.film.size(), 0, limits, cost);
+        self.schedule.focus(self.area, 0);
         (self.sampler, self.seconds, self.cpu_seconds) = (sampler, 0.0, 0.0);
     }
 
@@ -111,6 +126,7 @@ impl Engine {
         self.schedule.published(self.seconds, cost);
         (picture.size, picture.complete) = (self.film.size(), self.is_complete());
         picture.fewest_samples = self.film.sample_range().0;
+        picture.focus = self.area.map(|area| (area, self.film.fewest_samples(area)));
         picture.stats = RenderStats {
             cpu_seconds: self.cpu_seconds,
             guided_flights: self.sampler.found_flights(),

@@ -142,6 +142,9 @@ impl<'a> PixelEstimate<'a> {
     }
 }
 
+/// Samples without which a pixel has no variance.
+pub const FEWEST_FOR_VARIANCE: u32 = 2;
+
 /// (R + G + B) / 3.
 pub fn gray(rgb: [f64; 3]) -> f64 {
     (rgb[0] + rgb[1] + rgb[2]) / 3.0

@@ -7,6 +7,7 @@
 use bytemuck::{Pod, Zeroable, bytes_of};
 use glam::UVec2;
 
+use super::area::Area;
 use super::pair::{Pair, add_rgb};
 use crate::error::{Error, Result};
 use crate::math::{ACCUMULATORS, Rgb};
@@ -170,6 +171,12 @@ impl Film {
             }
         }
         range
+    }
+
+    /// Fewest samples of a pixel of `area`; none of them lies on the film: 0.
+    pub fn fewest_samples(&self, area: Area) -> u32 {
+        let pixels = area.within(self.size).iter();
+        pixels.map(|pixel| self.samples(pixel)).min().unwrap_or(0)
     }
 
     /// A copy.

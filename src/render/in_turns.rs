@@ -8,16 +8,13 @@ use glam::UVec2;
 
 use super::compare::NoiseHistory;
 use super::engine::{Engine, Step};
-use super::estimate::{FilmStats, samples_per_pixel};
+use super::estimate::{FEWEST_FOR_VARIANCE, FilmStats, samples_per_pixel};
 use super::film::Film;
 use super::pool::{Failure, Pool};
 use super::schedule::Limits;
 use super::turns::{self, Account, Share};
 use crate::error::Result;
 use crate::transport::PixelSampler;
-
-/// Samples without which a pixel has no variance.
-pub(super) const FEWEST: u32 = 2;
 
 /// What became of one side.
 pub struct RenderedSide {
@@ -136,20 +133,20 @@ impl Turning {
             return Limits { seconds, ..limits };
         }
         let (_, most) = self.engine.film().sample_range();
-        Limits { spp: most.max(FEWEST), seconds: None }
+        Limits { spp: most.max(FEWEST_FOR_VARIANCE), seconds: None }
     }
 
     /// Whether some pixels still lack samples that others have.
     fn is_uneven(&self) -> bool {
         let (fewest, most) = self.engine.film().sample_range();
-        self.amount.evenly && (fewest < most || fewest < FEWEST)
+        self.amount.evenly && (fewest < most || fewest < FEWEST_FOR_VARIANCE)
     }
 
     /// Adds the present noise to the history, if every pixel has one.
     fn note_noise(&mut self, pool: &Pool) {
         let film = self.engine.film();
         let (fewest, _) = film.sample_range();
-        if fewest < 2 {
+        if fewest < FEWEST_FOR_VARIANCE {
             return;
         }
         if let Some(noise) = pool.install(|| FilmStats::of(film)).noise {

@@ -2,12 +2,14 @@
 //!
 //! - [`film`]: per-pixel sums in independent accumulators, kept so that a render can be continued
 //!   bit for bit; [`estimate`] reads means and variances from them, [`publish`] whole pictures.
+//!   An [`area`] is a rectangle of its pixels.
 //! - [`schedule`]: pure logic; from what is done and what it cost to the next piece of work.
 //! - [`pool`] does one piece of work on all threads, [`engine`] repeats that. The window's
 //!   [`session`] and the command line's [`headless`] both drive the same engine; where several
 //!   share the threads, [`turns`] says whose turn it is; [`side_by_side`] renders two so, and
 //!   [`compare`] holds their films against each other; [`sweep`] does it with all strategies.
 
+pub mod area;
 pub mod compare;
 pub mod engine;
 pub mod estimate;
@@ -25,6 +27,7 @@ pub mod sweep;
 mod thread_time;
 pub mod turns;
 
+pub use area::Area;
 pub use estimate::FilmStats;
 pub use film::Film;
 pub use headless::{Headless, Job, render_headless};

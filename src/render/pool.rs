@@ -161,6 +161,11 @@ struct Row<'a> {
 }
 
 impl Row<'_> {
+    /// Whether pixels of the row that begins with `first` stand for a block.
+    fn has_work(&self, first: UVec2, width: u32) -> bool {
+        width > 0 && representative(first, self.work.stride, self.size).y == first.y
+    }
+
     /// Samples one row of a tile.
     fn sample(
         &self,
@@ -169,16 +174,21 @@ impl Row<'_> {
         sums: &mut [Sums],
         failure: &Mutex<Option<Failure>>,
     ) -> Done {
+        let (first, width) = row_pixels(self.size, self.tiles, row);
+        if !self.has_work(first, width) {
+            // Most rows of a coarse pass: to ask for the time would take longer than all the others.
+            return Done::nothing();
+        }
         let start = thread_seconds();
         let at = Cell::new(None);
         let totals = Cell::new(Totals::default());
         // The sums of a pixel change only after its sample is complete, so a panicking sampler
         // leaves nothing half done.
         let done = catch_unwind(AssertUnwindSafe(|| {
-            let (first, width) = row_pixels(self.size, self.tiles, row);
             for x in 0..width {
                 let pixel = UVec2::new(first.x + x, first.y);
-                if representative(pixel, self.work.stride, self.size) != pixel {
+                let is_meant = self.work.area.is_none_or(|area| area.contains(pixel));
+                if !is_meant || representative(pixel, self.work.stride, self.size) != pixel {
                     continue;
                 }
                 let count = &mut counts[x as usize];
@@ -231,7 +241,7 @@ mod tests {
     const SIZE: UVec2 = UVec2::new(53, 37);
 
     fn whole(film: &Film, target: u32) -> Work {
-        Work { stride: 1, target, tiles: 0..film.tile_count() }
+        Work { stride: 1, target, tiles: 0..film.tile_count(), area: None }
     }
 
     fn rendered(threads: usize) -> Film {

@@ -3,6 +3,7 @@
 use glam::UVec2;
 use rayon::prelude::*;
 
+use super::area::Area;
 use super::estimate::{FilmStats, LineStats, PixelEstimate, samples_per_pixel};
 use super::film::Film;
 use super::layers::{Layer, LayerMap};
@@ -21,6 +22,8 @@ pub struct Picture {
     pub layer: LayerMap,
     /// Samples that every pixel has.
     pub fewest_samples: u32,
+    /// The rectangle that gets all samples, and those of its pixel that has fewest.
+    pub focus: Option<(Area, u32)>,
     /// Variance of the gray mean of each pixel, and the variance of that; row 0 on top, NaN below two
     /// samples; empty unless asked for.
     pub variance: Vec<[f32; 2]>,

@@ -5,11 +5,13 @@
 //! met at a finer stride are those that have no sample yet. After that come whole passes. A piece
 //! of work says "bring these pixels to so many samples": one that was broken off is simply given
 //! out again, and a film that comes from anywhere is continued where each of its pixels stands.
+//! That is also what lets a rectangle have all samples for a while, and the others catch up later.
 
 use std::ops::Range;
 
 use glam::UVec2;
 
+use super::area::Area;
 use super::film::{MAX_SAMPLES, TILE, TILE_PIXELS};
 
 /// How long the coarse picture should take, in seconds.
@@ -32,9 +34,12 @@ const MOST_PASSES_AT_ONCE: u32 = 64;
 /// Weight of the newest measurement in the cost of a path.
 const COST_WEIGHT: f64 = 0.3;
 
-/// The pixel that stands for the block of `stride`² pixels around `pixel`.
+/// The pixel that stands for the block of `stride`² pixels around `pixel`; strides are powers of 2.
 pub fn representative(pixel: UVec2, stride: u32, size: UVec2) -> UVec2 {
-    (pixel / stride * stride + stride / 2).min(size - UVec2::ONE)
+    debug_assert!(stride.is_power_of_two());
+    // Divisions would be felt: every picture asks this of every pixel.
+    let corner = pixel & UVec2::splat(!(stride - 1));
+    (corner + stride / 2).min(size - UVec2::ONE)
 }
 
 /// One piece of work.
@@ -46,6 +51,8 @@ pub struct Work {
     pub target: u32,
     /// Among these tiles of the film.
     pub tiles: Range<usize>,
+    /// Among the pixels of this rectangle; `None`: all.
+    pub area: Option<Area>,
 }
 
 /// What the schedule answers.
@@ -72,8 +79,9 @@ pub struct Limits {
 /// it began or was continued.
 #[derive(Clone, Debug)]
 pub struct Schedule {
-    tiles: usize,
-    pixels: u64,
+    size: UVec2,
+    /// Where samples go once every pixel has one; `None`: everywhere.
+    area: Option<Area>,
     limits: Limits,
     stride: u32,
     target: u32,
@@ -90,12 +98,11 @@ impl Schedule {
     /// A plan for a film of `size` pixels in which every pixel has `passes` samples or more.
     /// `seconds_per_path` is the cost measured before, with all threads at work.
     pub fn new(size: UVec2, passes: u32, limits: Limits, seconds_per_path: Option<f64>) -> Self {
-        let tiles = size.x.div_ceil(TILE) as usize * size.y.div_ceil(TILE) as usize;
         let pixels = u64::from(size.x) * u64::from(size.y);
         let stride = if passes == 0 { first_stride(pixels, seconds_per_path) } else { 1 };
         Self {
-            tiles,
-            pixels,
+            size,
+            area: None,
             limits,
             stride,
             target: passes.saturating_add(1),
@@ -106,6 +113,17 @@ impl Schedule {
             seconds_per_path,
             published: None,
             publish_cost: 0.0,
+        }
+    }
+
+    /// Gives all samples to the pixels of `area`, some of the film's, which have `passes` samples or
+    /// more, or to all pixels. The first pass goes over the whole film all the same, so that there is a picture.
+    pub fn focus(&mut self, area: Option<Area>, passes: u32) {
+        self.area = area;
+        if self.passes > 0 {
+            self.passes = passes.max(1);
+            self.target = self.passes.saturating_add(1);
+            self.next_tile = self.band().start;
         }
     }
 
@@ -120,12 +138,14 @@ impl Schedule {
             return Next::Paused;
         }
         let seconds = self.work_seconds(now);
-        if self.next_tile == 0 && self.stride == 1 {
+        let band = self.band();
+        if self.next_tile == band.start && self.stride == 1 {
             self.target = self.passes + self.passes_at_once(seconds);
         }
         let last = self.next_tile + self.tiles_within(seconds);
-        let tiles = self.next_tile..last.min(self.tiles);
-        Next::Work(Work { stride: self.stride, target: self.target, tiles })
+        let tiles = self.next_tile..last.min(band.end);
+        let area = self.focused_area();
+        Next::Work(Work { stride: self.stride, target: self.target, tiles, area })
     }
 
     /// Takes note that some paths took some seconds, whether their work was completed or not.
@@ -141,10 +161,9 @@ impl Schedule {
     /// Takes note that the whole of `work` is done.
     pub fn completed(&mut self, work: &Work) {
         self.next_tile = work.tiles.end;
-        if self.next_tile < self.tiles {
+        if self.next_tile < self.band().end {
             return;
         }
-        self.next_tile = 0;
         self.has_picture = true;
         if self.stride > 1 {
             self.stride /= 2;
@@ -152,6 +171,7 @@ impl Schedule {
             self.pass_ended |= self.passes == 0;
             self.passes = self.target;
         }
+        self.next_tile = self.band().start;
     }
 
     /// Whether to show a picture at time `now`: the first as soon as it is there, then when the
@@ -183,7 +203,7 @@ impl Schedule {
         self.has_picture
     }
 
-    /// Samples that every pixel has.
+    /// Samples that every pixel has, or every one of those that get all.
     pub fn passes(&self) -> u32 {
         self.passes
     }
@@ -201,6 +221,26 @@ impl Schedule {
     /// The measured cost of a path with all threads at work, for the next plan.
     pub fn seconds_per_path(&self) -> Option<f64> {
         self.seconds_per_path
+    }
+
+    /// Where samples go now, unless it is everywhere.
+    fn focused_area(&self) -> Option<Area> {
+        self.area.filter(|_| self.passes > 0)
+    }
+
+    /// The tiles that get samples now: whole rows of them.
+    fn band(&self) -> Range<usize> {
+        let across = self.size.x.div_ceil(TILE) as usize;
+        let rows = match self.focused_area() {
+            Some(area) => area.first.y / TILE..(area.first.y + area.size.y).div_ceil(TILE),
+            None => 0..self.size.y.div_ceil(TILE),
+        };
+        rows.start as usize * across..rows.end as usize * across
+    }
+
+    /// The number of pixels that get samples now.
+    fn pixels(&self) -> f64 {
+        self.focused_area().unwrap_or(Area::of(self.size)).pixels() as f64
     }
 
     fn most_samples(&self) -> u32 {
@@ -227,16 +267,21 @@ impl Schedule {
     fn passes_at_once(&self, seconds: f64) -> u32 {
         let wanted = (self.most_samples() - self.passes).min(MOST_PASSES_AT_ONCE);
         let Some(cost) = self.seconds_per_path.filter(|_| self.passes > 0) else { return 1 };
-        let fitting = seconds / (cost * self.pixels as f64);
+        let fitting = seconds / (cost * self.pixels());
         (fitting as u32).clamp(1, wanted)
     }
 
     /// How many tiles fit the time, one at least; an eighth of all while the cost is unknown.
     fn tiles_within(&self, seconds: f64) -> usize {
-        let Some(cost) = self.seconds_per_path else { return self.tiles.div_ceil(8) };
+        let tiles = self.band().len();
+        let Some(cost) = self.seconds_per_path else { return tiles.div_ceil(8) };
         let passes = f64::from(self.target - self.passes);
-        let paths = TILE_PIXELS as f64 / f64::from(self.stride * self.stride) * passes;
-        ((seconds / (cost * paths)) as usize).clamp(1, self.tiles)
+        let pixels = match self.focused_area() {
+            Some(_) => self.pixels() / tiles as f64,
+            None => TILE_PIXELS as f64,
+        };
+        let paths = pixels / f64::from(self.stride * self.stride) * passes;
+        ((seconds / (cost * paths)) as usize).clamp(1, tiles)
     }
 }
 
@@ -274,6 +319,7 @@ mod tests {
                     let count = &mut counts[(y * SIZE.x + x) as usize];
                     if work.tiles.contains(&tile_of(pixel))
                         && representative(pixel, work.stride, SIZE) == pixel
+                        && work.area.is_none_or(|area| area.contains(pixel))
                     {
                         paths += work.target.saturating_sub(*count);
                         *count = (*count).max(work.target);
@@ -352,6 +398,28 @@ mod tests {
         assert_eq!(Schedule::new(SIZE, 9, spp(4), None).next(0.0, false), Next::Done);
     }
 
+    /// The first pass is the whole film's, then all goes to the rectangle, and without it the others
+    /// catch up.
+    #[test]
+    fn a_rectangle_gets_all_samples_and_the_others_catch_up() {
+        let area = Area { first: UVec2::new(20, 18), size: UVec2::new(30, 20) };
+        let inside =
+            |index: usize| area.contains(UVec2::new(index as u32 % SIZE.x, index as u32 / SIZE.x));
+        let mut counts = vec![0; (SIZE.x * SIZE.y) as usize];
+        let mut schedule = Schedule::new(SIZE, 0, spp(6), None);
+        schedule.focus(Some(area), 0);
+        let works = play(&mut schedule, &mut counts, 1e-4, 0.0);
+        for (index, &count) in counts.iter().enumerate() {
+            assert_eq!(count, if inside(index) { 6 } else { 1 }, "pixel {index}");
+        }
+        let focused = works.iter().filter(|work| work.area.is_some());
+        assert!(focused.clone().count() > 1 && focused.clone().all(|work| work.target > 1));
+        assert!(focused.clone().all(|work| work.tiles.start >= 7 && work.tiles.end <= 21));
+        schedule.focus(None, 1);
+        play(&mut schedule, &mut counts, 1e-4, 0.0);
+        assert!(counts.iter().all(|&count| count == 6));
+    }
+
     #[test]
     fn work_that_was_broken_off_comes_again() {
         let mut schedule = Schedule::new(SIZE, 0, spp(1), None);
@@ -371,7 +439,7 @@ mod tests {
         assert!((0.05..0.11).contains(&(paths as f64 * 1e-4)), "{work:?}");
         let mut cheap = Schedule::new(SIZE, 3, spp(0), Some(1e-7));
         let Next::Work(work) = cheap.next(10.0, false) else { panic!("no work") };
-        assert_eq!(work, Work { stride: 1, target: 3 + 64, tiles: 0..28 });
+        assert_eq!(work, Work { stride: 1, target: 3 + 64, tiles: 0..28, area: None });
         let mut limited = Schedule::new(SIZE, 3, spp(5), Some(1e-7));
         let Next::Work(work) = limited.next(10.0, false) else { panic!("no work") };
         assert_eq!(work.target, 5);

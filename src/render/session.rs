@@ -11,6 +11,7 @@ use std::thread::JoinHandle;
 
 use glam::UVec2;
 
+use super::area::Area;
 use super::film::Film;
 use super::pool::{Failure, Pool, Priority};
 use super::publish::{Extras, Picture};
@@ -65,6 +66,7 @@ struct Mail {
     paused: bool,
     extras: Extras,
     seat: Option<Seat>,
+    area: Option<Area>,
 }
 
 /// What becomes of a provisional request.
@@ -152,6 +154,12 @@ impl Session {
     /// Takes turns with the session of the other seat, or has the machine for itself again.
     pub fn take_seat(&self, seat: Option<Seat>) {
         self.shared.post(|mail| mail.seat = seat);
+    }
+
+    /// Gives all samples to the pixels of `area` once every pixel has one, or to all pixels, which
+    /// catch up. Of another film's size, it is what of it lies on that.
+    pub fn focus(&self, area: Option<Area>) {
+        self.shared.post(|mail| mail.area = area);
     }
 
     /// The latest picture. After [`Self::start`] the old one stays until the new request has its

@@ -21,8 +21,9 @@ pub use plan::{Idle, Kind, Source, Trial, plan};
 pub use ranking::{Entry, Gain, Ranking, Worth};
 
 use super::compare::Side;
+use super::estimate::FEWEST_FOR_VARIANCE;
 use super::film::Totals;
-use super::in_turns::{Amount, FEWEST, RenderedSide, Turning, take_turns};
+use super::in_turns::{Amount, RenderedSide, Turning, take_turns};
 use super::pool::{Failure, Pool};
 use super::turns::Account;
 use crate::error::{Error, Result};
@@ -131,7 +132,7 @@ pub fn sweep(
 /// fair part of the picture.
 fn measured(rendered: &RenderedSide) -> Side {
     let side = Side::of(&rendered.film, rendered.cpu_seconds);
-    match side.fewest_samples < FEWEST {
+    match side.fewest_samples < FEWEST_FOR_VARIANCE {
         true => Side { variance_of_mean: None, variance_error: None, noise: None, ..side },
         false => side,
     }

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use crate::render::Picture;
-use crate::render::compare::{Area, Comparison, Side};
+use crate::render::compare::{Comparison, Side};
+use crate::render::{Area, Picture};
 
 /// One picture or those of A and B, and the rectangle.
 #[derive(Clone)]

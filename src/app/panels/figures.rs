@@ -12,7 +12,8 @@ use crate::app::yardstick::{Measure, Yardstick};
 use crate::image::figures::rounded;
 use crate::image::metrics::Errors;
 use crate::image::sheet;
-use crate::render::compare::{Area, NoiseHistory, Side};
+use crate::render::Area;
+use crate::render::compare::{NoiseHistory, Side};
 
 /// Width of a column of figures.
 const FIGURE: f32 = 52.0;

@@ -5,9 +5,9 @@
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-use super::Area;
 use super::tally::Tally;
 use crate::math::ACCUMULATORS;
+use crate::render::area::Area;
 
 /// The chance that two settings which do agree are said to differ, in one check of all blocks.
 pub const ALARM: f64 = 1.0e-3;

@@ -2,6 +2,7 @@
 
 use super::Side;
 use crate::image::figures::rounded;
+use crate::render::estimate::FEWEST_FOR_VARIANCE;
 
 /// Standard errors on either side of an estimate that hold the truth with 95 %.
 const CONFIDENCE: f64 = 1.96;
@@ -24,10 +25,15 @@ pub struct SpeedUp {
 }
 
 impl SpeedUp {
-    /// The speed-up from `a` to `b`; none where one has no noise or no measured time.
+    /// The speed-up from `a` to `b`; none where one has no noise or no measured time, or where only
+    /// some of its pixels have the samples that it takes to know their variance: the noise of one
+    /// part of the picture says nothing of another.
     ///
     /// The error is that of the estimated variances, and of the clock.
     pub fn new(a: &Side, b: &Side) -> Option<Self> {
+        if a.fewest_samples.min(b.fewest_samples) < FEWEST_FOR_VARIANCE {
+            return None;
+        }
         let ((a, error_a), (b, error_b)) = (a.variance_times_time()?, b.variance_times_time()?);
         let log_error = error_a.hypot(error_b).hypot(TIMING_ERROR);
         let ratio = a / b;
@@ -165,7 +171,12 @@ mod tests {
 
     #[test]
     fn without_noise_or_samples_there_is_nothing_to_compare() {
-        let silent = Side { variance_of_mean: Some(0.0), cpu_seconds: 1.0, ..Side::default() };
+        let silent = Side {
+            fewest_samples: 2,
+            variance_of_mean: Some(0.0),
+            cpu_seconds: 1.0,
+            ..Side::default()
+        };
         let noisy = Side { variance_of_mean: Some(1.0), variance_error: Some(0.1), ..silent };
         assert_eq!(SpeedUp::new(&silent, &noisy), None);
         assert!(sentence(&[silent, noisy], None).starts_with("A shows no noise"));
@@ -173,6 +184,8 @@ mod tests {
         assert!(sentence(&[silent; 2], None).starts_with("Neither"));
         assert!(sentence(&[Side::default(); 2], None).contains("too few samples"));
         let timeless = Side { cpu_seconds: 0.0, ..noisy };
+        let partly = Side { fewest_samples: 1, ..noisy };
+        assert_eq!(SpeedUp::new(&partly, &noisy), None, "the noise of one part of the picture");
         assert_eq!(SpeedUp::new(&timeless, &noisy), None);
     }
 }

@@ -2,7 +2,8 @@
 
 use glam::UVec2;
 
-use super::{Area, Side};
+use super::Side;
+use crate::render::area::Area;
 use crate::render::estimate::{PixelEstimate, gray};
 use crate::render::film::Film;
 use crate::render::publish::Picture;
@@ -83,8 +84,11 @@ impl Source for Picture {
         self.size
     }
 
-    fn samples(&self, _: UVec2) -> u32 {
-        self.fewest_samples
+    fn samples(&self, pixel: UVec2) -> u32 {
+        match self.focus {
+            Some((area, fewest)) if area.contains(pixel) => fewest,
+            _ => self.fewest_samples,
+        }
     }
 
     fn estimate(&self, pixel: UVec2) -> Option<Estimate> {

@@ -9,6 +9,7 @@ use glam::UVec2;
 
 use super::{Improvement, Mail, Request, Resume, Seat, Shared, lock};
 use crate::error::Result;
+use crate::render::area::Area;
 use crate::render::engine::{Engine, Step};
 use crate::render::film::Film;
 use crate::render::headless::same_size;
@@ -20,7 +21,8 @@ use crate::transport::PixelSampler;
 
 /// How long a request without a picture is left to get one when the next already waits. Otherwise
 /// a drag whose edits come faster than coarse pictures would show nothing until it ends.
-const PATIENCE: Duration = Duration::from_millis(250);
+/// Long enough for a machine whose cores are busy drawing the window.
+const PATIENCE: Duration = Duration::from_secs(1);
 /// How long it waits before it asks for its turn again. Turns are twenty times as long.
 const TURN: Duration = Duration::from_millis(1);
 
@@ -36,6 +38,8 @@ pub(super) struct Worker {
     owes_extras: bool,
     /// Where it takes turns with another session.
     seat: Option<Seat>,
+    /// The pixels that get all samples.
+    area: Option<Area>,
     job: Option<Active>,
     seconds_per_path: Option<f64>,
     snapshots: Vec<Sender<Film>>,
@@ -124,6 +128,7 @@ impl Worker {
             extras: Extras::default(),
             owes_extras: false,
             seat: None,
+            area: None,
             job: None,
             seconds_per_path: None,
             snapshots: Vec::new(),
@@ -196,7 +201,7 @@ impl Worker {
         self.paused = mail.paused;
         self.owes_extras |= mail.extras.adds_to(self.extras);
         self.extras = mail.extras;
-        let seat = mail.seat.clone();
+        let (seat, area) = (mail.seat.clone(), mail.area);
         if self.job.as_ref().is_some_and(Active::is_owed_a_picture) && mail.request.is_some() {
             // The epoch stays the old one: the letter is still unread.
             return true;
@@ -205,8 +210,12 @@ impl Worker {
         self.epoch = shared.epoch.load(Ordering::Relaxed);
         drop(mail);
         self.take_seat(seat);
+        let is_moved = std::mem::replace(&mut self.area, area) != area;
         if let Some(request) = request {
             self.begin(request);
+        } else if let Some(job) = self.job.as_mut().filter(|_| is_moved) {
+            job.engine.focus(area);
+            job.shown_final = false;
         }
         if let Some(improvement) = improvement {
             self.take_in(improvement);
@@ -266,6 +275,7 @@ impl Worker {
             Ok(film) => {
                 let limits = Limits { spp: request.spp, seconds: None };
                 let mut engine = Engine::new(request.sampler, film, limits, self.seconds_per_path);
+                engine.focus(self.area);
                 engine.count_in(cpu_seconds);
                 let (generation, provisional) = (request.generation, request.provisional);
                 self.job = Some(Active::new(engine, generation, provisional, resumed_at));

@@ -10,6 +10,7 @@ const SUBSUMED: &str = "ratio tracking collects it";
 /// Variance × time of 1 with a standard error of `error` is that of `cost` times as much.
 fn side(cost: f64, error: f64) -> Side {
     Side {
+        fewest_samples: 2,
         variance_of_mean: Some(cost / 3.0),
         variance_error: Some(error * cost / 3.0),
         cpu_seconds: 3.0,

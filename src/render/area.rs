@@ -30,6 +30,11 @@ impl Area {
         Self { first, size: end - first }
     }
 
+    /// Whether a pixel is one of its.
+    pub fn contains(&self, pixel: UVec2) -> bool {
+        pixel.cmpge(self.first).all() && (pixel - self.first).cmplt(self.size).all()
+    }
+
     /// Number of pixels.
     pub fn pixels(&self) -> u64 {
         u64::from(self.size.x) * u64::from(self.size.y)
@@ -37,7 +42,7 @@ impl Area {
 
     /// The square blocks that it falls into, line by line, those at its far borders cut: 8 along
     /// the longer side, fewer where that would leave them less than 16 pixels wide.
-    pub(super) fn blocks(&self) -> Vec<Self> {
+    pub(crate) fn blocks(&self) -> Vec<Self> {
         let side = self.size.max_element().div_ceil(BLOCKS_ACROSS).max(SMALLEST_BLOCK);
         let counts = UVec2::new(self.size.x.div_ceil(side), self.size.y.div_ceil(side));
         let numbers = (0..counts.y).flat_map(|y| (0..counts.x).map(move |x| UVec2::new(x, y)));
@@ -49,7 +54,7 @@ impl Area {
     }
 
     /// Its pixels, line by line.
-    pub(super) fn iter(&self) -> impl Iterator<Item = UVec2> {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = UVec2> + use<> {
         let Self { first, size } = *self;
         (0..size.y).flat_map(move |y| (0..size.x).map(move |x| first + UVec2::new(x, y)))
     }
