@@ -34,7 +34,10 @@ pub enum Command {
     NextToneCurve,
     FalseColor,
     FoldPanels,
+    FullScreen,
     Palette,
+    /// Show what to begin with.
+    Start,
     Shortcuts,
     Compare,
     SwitchSide,
@@ -45,6 +48,8 @@ pub enum Command {
     CompareAsB,
     SaveComparison,
     Rectangle,
+    /// Give the rectangle all samples.
+    SamplesHere,
     LoadReference,
     PictureAsReference,
     RemoveReference,
@@ -64,7 +69,7 @@ use Command as C;
 
 impl Command {
     /// All of them, in the order of the help page.
-    pub const ALL: [Self; 47] = [
+    pub const ALL: [Self; 50] = [
         C::Open,
         C::OpenPath,
         C::SaveExr,
@@ -89,7 +94,9 @@ impl Command {
         C::NextToneCurve,
         C::FalseColor,
         C::FoldPanels,
+        C::FullScreen,
         C::Palette,
+        C::Start,
         C::Shortcuts,
         C::Compare,
         C::SwitchSide,
@@ -100,6 +107,7 @@ impl Command {
         C::CompareAsB,
         C::SaveComparison,
         C::Rectangle,
+        C::SamplesHere,
         C::LoadReference,
         C::PictureAsReference,
         C::RemoveReference,
@@ -141,7 +149,9 @@ impl Command {
             C::NextToneCurve => "Next tone curve",
             C::FalseColor => "False color",
             C::FoldPanels => "Fold the panels",
+            C::FullScreen => "Picture on the full screen",
             C::Palette => "All commands…",
+            C::Start => "Start with a scene",
             C::Shortcuts => "Keys and mouse",
             C::Compare => "Compare two strategies",
             C::SwitchSide => "Edit the other side",
@@ -152,6 +162,7 @@ impl Command {
             C::CompareAsB => "Compare snapshot as B",
             C::SaveComparison => "Save comparison as PNG…",
             C::Rectangle => "Figures of a rectangle",
+            C::SamplesHere => "Samples only in the rectangle",
             C::LoadReference => "Load reference…",
             C::PictureAsReference => "Use picture as reference",
             C::RemoveReference => "Remove the reference",
@@ -203,6 +214,10 @@ impl Command {
             C::NextToneCurve => "Go from one tone curve to the next: filmic, AgX, linear.",
             C::FalseColor => "Show how many stops each pixel is from middle gray, or the picture.",
             C::FoldPanels => "Hide the panels and give the picture the room, or bring them back.",
+            C::FullScreen => {
+                "Give the picture the whole screen, without menus and panels, or bring them back."
+            }
+            C::Start => "Show the scenes that Flambeau brings along and the files of before.",
             C::Palette => "Find a command by a few letters of its name and carry it out.",
             C::Shortcuts => "Show every key and every move of the mouse.",
             C::Compare => {
@@ -229,6 +244,10 @@ impl Command {
             C::Rectangle => {
                 "Drag a rectangle over the picture: noise, errors and the comparison are told of it \
                  alone too. Escape or a click on the picture takes it away."
+            }
+            C::SamplesHere => {
+                "Give the rectangle all the samples, so that it gets clean sooner, or all pixels \
+                 again, which catch up."
             }
             C::LoadReference => {
                 "Measure the picture, or A and B, against a picture without noise (.exr or .npy): \
@@ -285,7 +304,9 @@ impl Command {
             C::NextToneCurve => (Modifiers::NONE, Key::T),
             C::FalseColor => (Modifiers::SHIFT, Key::T),
             C::FoldPanels => (Modifiers::NONE, Key::N),
+            C::FullScreen => (Modifiers::NONE, Key::F11),
             C::Palette => (Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::P),
+            C::Start => (Modifiers::SHIFT, Key::F1),
             C::Shortcuts => (Modifiers::NONE, Key::F1),
             C::Compare => (Modifiers::NONE, Key::C),
             C::SwitchSide => (Modifiers::NONE, Key::B),
@@ -296,6 +317,7 @@ impl Command {
             C::CompareAsB => (Modifiers::SHIFT, Key::B),
             C::SaveComparison => (Modifiers::COMMAND, Key::P),
             C::Rectangle => (Modifiers::NONE, Key::M),
+            C::SamplesHere => (Modifiers::SHIFT, Key::M),
             C::LoadReference => (Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::O),
             C::PictureAsReference => (Modifiers::COMMAND, Key::K),
             C::RemoveReference => (Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::K),

@@ -11,6 +11,7 @@ use glam::Vec3A;
 use super::state::Editor;
 use super::theme::color;
 use super::viewport::View;
+use super::widgets::arrow_steps;
 use crate::scene;
 use crate::scene::settings::LightSettings;
 use figure::{Figure, Handle, Part};
@@ -18,6 +19,8 @@ use lens::Lens;
 
 /// Reach of the hand around a handle, in points.
 const REACH: f32 = 9.0;
+/// How far an arrow key moves a handle that has the focus, in points.
+const NUDGE: f32 = 8.0;
 /// Radius of the dot of a handle, in points.
 const DOT: f32 = 4.0;
 
@@ -52,16 +55,27 @@ impl Gizmo {
         let moved = self.pull(ui, &lens, pivot).unwrap_or(light.clone());
         let figure = Figure::of(&moved, &lens, pivot);
         let handles = figure.handles_on(&lens);
-        let is_under = |(handle, at): &&(Handle, Pos2)| sense(ui, view, *handle, *at).hovered();
-        let under: Vec<Handle> =
-            handles.iter().filter(is_under).map(|(handle, _)| *handle).collect();
-        let lit = self.grip.as_ref().map(|grip| grip.handle).or(under.first().copied());
-        if lit.is_some() {
+        let responses: Vec<(Handle, Pos2, Response)> = handles
+            .into_iter()
+            .map(|(handle, at)| (handle, at, sense(ui, view, handle, at)))
+            .collect();
+        let under = responses.iter().find(|(.., response)| response.hovered());
+        let focused = responses.iter().find(|(.., response)| response.has_focus());
+        let held = self.grip.as_ref().map(|grip| grip.handle);
+        if held.is_some() || under.is_some() {
             ui.set_cursor_icon(CursorIcon::Move);
         }
+        let lit = held.or(under.or(focused).map(|(handle, ..)| *handle));
         paint(ui, &lens, &figure, lit);
-        if let (Some(grip), true) = (&self.grip, moved != light) {
-            editor.name_edit(grip.handle.edit());
+        let (handle, moved) = match focused.filter(|_| held.is_none()) {
+            Some((handle, at, response)) => {
+                let to = *at + NUDGE * arrow_steps(ui, response.id);
+                (Some(*handle), drag::dragged(&moved, *handle, &lens, pivot, [*at, to]))
+            }
+            None => (held, moved),
+        };
+        if let (Some(handle), true) = (handle, moved != light) {
+            editor.name_edit(handle.edit());
             if let Some(light) =
                 self.selected.and_then(|at| editor.document.settings.light.get_mut(at))
             {

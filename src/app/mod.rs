@@ -86,6 +86,10 @@ impl eframe::App for Window {
     }
 }
 
+/// The shortest time between frames that the cores draw themselves: what they draw in vain they do
+/// not render.
+const SOFTWARE_PACE: std::time::Duration = std::time::Duration::from_millis(33);
+
 /// The flame of the torch; the system's own icon should it be unreadable.
 fn icon() -> egui::IconData {
     let png = include_bytes!("../../assets/icon.png");
@@ -114,7 +118,9 @@ pub fn run(source: Option<String>) -> Result<()> {
     };
     let create: eframe::AppCreator<'_> = Box::new(|creation| {
         let state = creation.wgpu_render_state.as_ref().ok_or("there is no graphics adapter")?;
-        let options = Options { source, cleared: true, ..Options::default() };
+        let is_software = state.adapter.get_info().device_type == wgpu::DeviceType::Cpu;
+        let pace = is_software.then_some(SOFTWARE_PACE);
+        let options = Options { source, cleared: true, pace, ..Options::default() };
         Ok(Box::new(Window { app: App::new(&creation.egui_ctx, state, options)? }))
     });
     eframe::run_native("flambeau", options, create).map_err(|error| no_window(&error))

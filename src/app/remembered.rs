@@ -14,21 +14,41 @@ use crate::image::tone::{Tone, ToneCurve};
 const FILE: &str = "window.json";
 /// Files that are remembered at most.
 const RECENT: usize = 10;
+/// Scenes whose references are remembered at most.
+const REFERENCES: usize = 20;
 
 /// What is remembered.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Remembered {
     /// Files that were open, the last one first.
     pub recent: Vec<String>,
+    /// The files of the references of scenes, the one that was loaded last first.
+    pub references: Vec<(String, PathBuf)>,
     /// Whether the panels are folded.
     pub folded: bool,
+    /// Whether a start without a file shows what to begin with.
+    pub start: bool,
     /// The tone curve, by its name.
     curve: String,
     /// Exposure in stops.
     exposure: f32,
     /// White balance in kelvin; 0 where none was chosen.
     white: f32,
+}
+
+impl Default for Remembered {
+    fn default() -> Self {
+        Self {
+            recent: Vec::new(),
+            references: Vec::new(),
+            folded: false,
+            start: true,
+            curve: String::new(),
+            exposure: 0.0,
+            white: 0.0,
+        }
+    }
 }
 
 impl Remembered {
@@ -56,11 +76,15 @@ impl Remembered {
         if source.starts_with("builtin:") {
             return;
         }
-        let path = std::path::absolute(source).unwrap_or_else(|_| PathBuf::from(source));
-        let path = path.to_string_lossy().into_owned();
+        let path = full_name(source);
         self.recent.retain(|other| *other != path);
         self.recent.insert(0, path);
         self.recent.truncate(RECENT);
+    }
+
+    /// Notes the files of the references of scenes.
+    pub fn note_references(&mut self, references: &[(String, PathBuf)]) {
+        self.references = references.iter().take(REFERENCES).cloned().collect();
     }
 
     /// How pictures are shown at first.
@@ -82,6 +106,15 @@ impl Remembered {
         self.exposure = tone.exposure;
         self.white = tone.white;
     }
+}
+
+/// The name of what was opened, the same from every folder.
+pub fn full_name(source: &str) -> String {
+    if source.starts_with("builtin:") {
+        return source.to_owned();
+    }
+    let path = std::path::absolute(source).unwrap_or_else(|_| PathBuf::from(source));
+    path.to_string_lossy().into_owned()
 }
 
 #[cfg(test)]

@@ -16,9 +16,9 @@ pub mod color {
     /// Text fields and slider rails: lower than the panel.
     pub const WELL: Color32 = Color32::from_gray(19);
     /// Buttons and boxes at rest.
-    pub const RAISED: Color32 = Color32::from_gray(52);
+    pub const RAISED: Color32 = Color32::from_gray(50);
     /// The same under the pointer.
-    pub const RAISED_HOVER: Color32 = Color32::from_gray(66);
+    pub const RAISED_HOVER: Color32 = Color32::from_gray(60);
     /// The same while pressed.
     pub const RAISED_ACTIVE: Color32 = Color32::from_gray(80);
     /// Menus and tooltips, which float above the panels.
@@ -30,7 +30,7 @@ pub mod color {
     /// Ordinary text.
     pub const TEXT: Color32 = Color32::from_gray(205);
     /// Labels, units and explanations.
-    pub const TEXT_DIM: Color32 = Color32::from_gray(152);
+    pub const TEXT_DIM: Color32 = Color32::from_gray(168);
     /// What is on, selected or in progress.
     pub const ACCENT: Color32 = Color32::from_rgb(230, 142, 62);
     /// Selected text and pressed segments behind their text.
@@ -57,7 +57,7 @@ pub mod color {
     }
 
     /// Something that failed.
-    pub const ERROR: Color32 = Color32::from_rgb(232, 112, 98);
+    pub const ERROR: Color32 = Color32::from_rgb(238, 126, 112);
 }
 
 /// Distances in points.
@@ -183,4 +183,43 @@ fn set_visuals(visuals: &mut egui::Visuals) {
 /// The frame of bars and panels.
 pub fn panel_frame() -> egui::Frame {
     egui::Frame::new().fill(color::PANEL).inner_margin(Margin::symmetric(space::PANEL, 6))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use egui::Rgba;
+
+    /// WCAG 2.1's contrast ratio: of relative luminances, each with 0.05 of stray light.
+    fn contrast(text: Color32, ground: Color32) -> f32 {
+        let light = |color: Color32| {
+            let color = Rgba::from(color);
+            0.2126 * color.r() + 0.7152 * color.g() + 0.0722 * color.b() + 0.05
+        };
+        light(text).max(light(ground)) / light(text).min(light(ground))
+    }
+
+    #[test]
+    fn all_text_can_be_read() {
+        assert!((contrast(Color32::WHITE, Color32::BLACK) - 21.0).abs() < 1e-3);
+        use color::*;
+        let plain = [TEXT_STRONG, TEXT, TEXT_DIM, ACCENT, WARNING, ERROR];
+        for ground in [SURROUND, PANEL, WELL, FLOATING, RAISED] {
+            for text in plain {
+                let ratio = contrast(text, ground);
+                assert!(ratio >= 4.5, "{text:?} on {ground:?}: {ratio}");
+            }
+        }
+        for (ground, texts) in [
+            // The key beside the command under the pointer.
+            (RAISED_HOVER, vec![TEXT_STRONG, TEXT, TEXT_DIM]),
+            (RAISED_ACTIVE, vec![TEXT_STRONG, TEXT]),
+            (ACCENT_FILL, vec![TEXT_STRONG]),
+        ] {
+            for text in texts {
+                let ratio = contrast(text, ground);
+                assert!(ratio >= 4.5, "{text:?} on {ground:?}: {ratio}");
+            }
+        }
+    }
 }

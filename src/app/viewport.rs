@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use egui::{CursorIcon, PointerButton, Rect, Response, Sense, Stroke, Ui};
+use egui::{CursorIcon, Key, PointerButton, Rect, Response, Sense, Stroke, Ui};
 use glam::{UVec2, Vec2, Vec3};
 
 use super::display::{self, Look};
@@ -12,6 +12,7 @@ use super::readout;
 use super::rectangle::Rectangle;
 use super::state::Editor;
 use super::theme::color;
+use super::widgets::arrow_steps;
 use super::zoom::{Placement, Zoom};
 use crate::image::tone::Channel;
 use crate::render::{Layer, Picture};
@@ -23,6 +24,8 @@ const SETTLE: Duration = Duration::from_millis(120);
 const NOTCH: f32 = 50.0;
 /// From this zoom on, the pixel under the pointer is outlined.
 const OUTLINE_FROM: f32 = 8.0;
+/// How far an arrow key drags the picture, in widths of it.
+const STEP: f32 = 0.02;
 /// The zoom of the zoom-to-pixels command.
 const PIXEL_ZOOM: f32 = 8.0;
 
@@ -196,6 +199,7 @@ impl Viewport {
         self.size = from_egui(area.size()) * factor;
         self.pointer = under.map(|at| from_egui(at - area.min) * factor);
         let view = hovered.map(|pane| self.view(pane, factor));
+        steer(ui, &response, editor);
         if !rectangle.draw(ui, &response, view.as_ref()) {
             self.navigate(ui, &response, editor, hovered.map(|pane| pane.picture.size));
         }
@@ -205,6 +209,11 @@ impl Viewport {
         }
         for (index, pane) in panes.iter().enumerate() {
             self.paint(ui, pane, index);
+        }
+        if response.has_focus() {
+            let inside = rect.shrink(1.0);
+            let stroke = Stroke::new(2.0, color::ACCENT);
+            ui.painter().rect_stroke(inside, 0.0, stroke, egui::StrokeKind::Inside);
         }
         let Some(hovered) = hovered else { return Vec::new() };
         let placement = self.zoom.place(hovered.picture.size, self.size);
@@ -234,7 +243,7 @@ impl Viewport {
             picture: pane.picture.clone(),
             look: pane.look,
             placement: self.zoom.place(pane.picture.size, self.size),
-            corner: from_egui(pane.area.min.to_vec2()) * ui.pixels_per_point(),
+            area: pane.area,
             pane: index,
         };
         let placement = shot.placement;
@@ -298,6 +307,27 @@ impl Viewport {
             editor.name_edit(name);
         }
     }
+}
+
+/// Moves the camera by keys while the picture has the focus.
+fn steer(ui: &Ui, response: &Response, editor: &mut Editor) {
+    if !response.has_focus() {
+        return;
+    }
+    let steps = from_egui(arrow_steps(ui, response.id));
+    let pressed = |key| ui.input(|input| input.num_presses(key)) as f32;
+    let closer = pressed(Key::PageUp) - pressed(Key::PageDown);
+    let shift = ui.input(|input| input.modifiers.shift);
+    let camera = &mut editor.document.settings.camera;
+    let pose = pose(camera);
+    let (name, moved) = match (steps != Vec2::ZERO, shift) {
+        (true, true) => ("pan", pose.pan(-STEP * steps, camera.fov_x)),
+        (true, false) => ("orbit", pose.orbit(STEP * steps)),
+        (false, _) if closer != 0.0 => ("dolly", pose.dolly(closer)),
+        (false, _) => return,
+    };
+    set_pose(camera, moved);
+    editor.name_edit(name);
 }
 
 fn from_egui(vector: egui::Vec2) -> Vec2 {

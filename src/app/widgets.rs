@@ -29,6 +29,22 @@ pub fn key_of(ui: &Ui, command: Command) -> String {
     ui.ctx().format_shortcut(&command.shortcut())
 }
 
+/// What the arrow keys ask of a control that has the focus: steps to the right and down. It keeps
+/// the keys for itself, which otherwise move the focus.
+pub fn arrow_steps(ui: &Ui, control: egui::Id) -> egui::Vec2 {
+    let filter = egui::EventFilter {
+        horizontal_arrows: true,
+        vertical_arrows: true,
+        ..egui::EventFilter::default()
+    };
+    ui.memory_mut(|memory| memory.set_focus_lock_filter(control, filter));
+    let pressed = |key| ui.input(|input| input.num_presses(key)) as f32;
+    egui::vec2(
+        pressed(egui::Key::ArrowRight) - pressed(egui::Key::ArrowLeft),
+        pressed(egui::Key::ArrowDown) - pressed(egui::Key::ArrowUp),
+    )
+}
+
 /// The first sentence of a key's help.
 pub fn key_summary(path: &str) -> String {
     let help = keys::find(path).map(|key| key.help.clone()).unwrap_or_default();

@@ -11,7 +11,7 @@ mod sweep;
 mod view;
 
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use egui::{Context, Ui};
 use glam::{UVec2, Vec3A};
@@ -28,8 +28,9 @@ use super::gizmo::Gizmo;
 use super::notices::{Level, Notice, Notices};
 use super::panels::bars::PathBar;
 use super::panels::palette::Palette;
+use super::panels::start::Start;
 use super::rectangle::Rectangle;
-use super::remembered::Remembered;
+use super::remembered::{Remembered, full_name};
 use super::saver::Saver;
 use super::snapshots::Snapshots;
 use super::state::{Compared, Editor, Side};
@@ -52,6 +53,8 @@ pub struct Options {
     pub dialogs: Dialogs,
     /// Whether each frame begins in the color of the panels, so that they need not be painted.
     pub cleared: bool,
+    /// The shortest time from frame to frame, where drawing one takes the cores from the render.
+    pub pace: Option<Duration>,
     /// The folder that keeps what outlasts a run; `None`: what the environment says (`FLAMBEAU_DATA`)
     /// or the system has for it.
     pub data: Option<PathBuf>,
@@ -70,6 +73,9 @@ pub struct App {
     saver: Saver,
     dialogs: Dialogs,
     cleared: bool,
+    pace: Option<Duration>,
+    /// When the last frame began.
+    last_frame: Option<Instant>,
     dialog: Option<Dialog>,
     path_bar: Option<PathBar>,
     /// What is to be saved once the scene is built.
@@ -79,7 +85,11 @@ pub struct App {
     /// What was guessed when it was opened.
     notes: Vec<Note>,
     folded: bool,
+    /// Whether the picture has the whole screen.
+    full_screen: bool,
     help: bool,
+    /// What to begin with, while it is shown.
+    start: Option<Start>,
     /// The list of all commands, while it is open.
     palette: Option<Palette>,
     /// The folder of what outlasts a run.
@@ -110,10 +120,12 @@ impl App {
         display::install(state);
         let wake = ctx.clone();
         let mut engine = Engine::new(options.threads, move || wake.request_repaint())?;
+        let is_plain = options.source.is_none();
         let source = options.source.unwrap_or_else(|| DEFAULT_SCENE.to_owned());
         engine.open(&source);
         let data = data::folder(options.data);
         let remembered = data.as_deref().map(Remembered::read).unwrap_or_default();
+        let references = remembered.references.clone();
         let mut editor = Editor::default();
         editor.document.tone = remembered.tone();
         Ok(Self {
@@ -128,13 +140,17 @@ impl App {
             saver: Saver::default(),
             dialogs: options.dialogs,
             cleared: options.cleared,
+            pace: options.pace,
+            last_frame: None,
             dialog: None,
             path_bar: None,
             waiting: Vec::new(),
             source,
             notes: Vec::new(),
             folded: remembered.folded,
+            full_screen: false,
             help: false,
+            start: (is_plain && remembered.start).then(Start::default),
             palette: None,
             largest: display::largest_size(state),
             stats,
@@ -144,7 +160,7 @@ impl App {
             kept: keeping::Kept::default(),
             subject: None,
             rectangle: Rectangle::default(),
-            yardstick: Yardstick::new(options.threads)?,
+            yardstick: Yardstick::new(options.threads, references)?,
             versus: None,
             dropped: None,
         })
@@ -188,6 +204,7 @@ impl App {
     /// Runs one frame in `ui`, which spans the window.
     pub fn frame(&mut self, ui: &mut Ui) {
         let ctx = ui.ctx().clone();
+        self.keep_pace();
         if let Some(stats) = &mut self.stats {
             stats.frame();
         }
@@ -216,6 +233,14 @@ impl App {
         self.watch_over_changes(&ctx);
     }
 
+    /// Waits until the next frame may begin, before it takes in what there is.
+    fn keep_pace(&mut self) {
+        if let (Some(pace), Some(last)) = (self.pace, self.last_frame) {
+            std::thread::sleep(pace.saturating_sub(last.elapsed()));
+        }
+        self.last_frame = Some(Instant::now());
+    }
+
     /// Finishes what is being saved and writes the diagnostic figures, if they were asked for.
     pub fn close(&mut self) {
         self.saver.finish();
@@ -242,7 +267,7 @@ impl App {
                     self.source = self.name_of(source);
                     self.versus = None;
                     self.rectangle.remove();
-                    if let Err(error) = self.yardstick.open(ctx, &self.source) {
+                    if let Err(error) = self.yardstick.open(ctx, &full_name(&self.source)) {
                         self.notices.failed(error.to_string());
                     }
                     if let Some(Notice { level, text }) = reopened {
@@ -298,6 +323,9 @@ impl App {
         self.diagnostics.update(ctx, &mut self.engine);
         self.update_versus();
         let Some(size) = self.film_size() else { return };
+        let alone = self.rectangle.alone(size);
+        self.engine.focus(alone);
+        self.duel.focus(alone);
         let mut news = Vec::new();
         let document = &self.editor.document;
         match self.duel.update(ctx, document, &mut self.engine, size) {

@@ -3,8 +3,7 @@
 
 mod load;
 
-use std::collections::HashMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -20,8 +19,9 @@ use super::state::Side;
 use crate::error::Result;
 use crate::image::metrics::{ErrorMap, Errors, Viewing};
 use crate::image::tone::Tone;
+use crate::render::Area;
 use crate::render::Picture;
-use crate::render::compare::{Area, NoiseHistory};
+use crate::render::compare::NoiseHistory;
 use crate::render::pool::{Pool, Priority};
 use load::Loading;
 
@@ -139,9 +139,10 @@ pub struct Yardstick {
     pool: Arc<Pool>,
     held: Option<Arc<Held>>,
     loading: Option<Loading>,
-    /// The scene that is open, and the files of the references of others.
+    /// The scene that is open, and the files of the references of it and of others, the one that was
+    /// loaded last first.
     scene: String,
-    remembered: HashMap<String, PathBuf>,
+    remembered: Vec<(String, PathBuf)>,
     errors: Background<Task, Measured>,
     map: Background<MapTask, Option<Map>>,
     /// How relMSE and FLIP of both sides went down.
@@ -155,17 +156,18 @@ pub struct Yardstick {
 }
 
 impl Yardstick {
-    /// Without a reference; `threads` will measure (`None`: one a core).
+    /// Without a reference, but with the files of those of some scenes; `threads` will measure
+    /// (`None`: one a core).
     ///
     /// # Errors
     /// When the system refuses to start them.
-    pub fn new(threads: Option<usize>) -> Result<Self> {
+    pub fn new(threads: Option<usize>, remembered: Vec<(String, PathBuf)>) -> Result<Self> {
         Ok(Self {
             pool: Arc::new(Pool::new(threads, Priority::Background)?),
             held: None,
             loading: None,
             scene: String::new(),
-            remembered: HashMap::new(),
+            remembered,
             errors: Background::default(),
             map: Background::default(),
             histories: Default::default(),
@@ -199,7 +201,20 @@ impl Yardstick {
     /// Takes the reference away.
     pub fn remove(&mut self) {
         self.forget();
-        self.remembered.remove(&self.scene);
+        self.remember(None);
+    }
+
+    /// The files of the references of scenes, the one that was loaded last first.
+    pub fn remembered(&self) -> &[(String, PathBuf)] {
+        &self.remembered
+    }
+
+    fn remember(&mut self, file: Option<&Path>) {
+        self.remembered.retain(|(scene, _)| *scene != self.scene);
+        if let Some(file) = file {
+            let file = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
+            self.remembered.insert(0, (self.scene.clone(), file));
+        }
     }
 
     fn forget(&mut self) {
@@ -219,8 +234,8 @@ impl Yardstick {
         }
         self.forget();
         scene.clone_into(&mut self.scene);
-        match self.remembered.get(scene) {
-            Some(path) => self.load(ctx, Origin::file(path.clone())),
+        match self.remembered.iter().find(|(other, _)| other == scene) {
+            Some((_, path)) => self.load(ctx, Origin::file(path.clone())),
             None => Ok(()),
         }
     }
@@ -229,11 +244,8 @@ impl Yardstick {
     pub fn poll(&mut self) -> Result<()> {
         let Some(result) = self.loading.as_ref().and_then(Loading::poll) else { return Ok(()) };
         self.loading = None;
-        let held = result?;
-        match &held.path {
-            Some(path) => self.remembered.insert(self.scene.clone(), path.clone()),
-            None => self.remembered.remove(&self.scene),
-        };
+        let held = result.inspect_err(|_| self.remember(None))?;
+        self.remember(held.path.as_deref());
         self.held = Some(Arc::new(held));
         self.histories = Default::default();
         Ok(())

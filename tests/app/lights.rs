@@ -114,6 +114,14 @@ fn a_handle_moves_the_light_and_leaves_the_camera_alone() {
     window.press(Modifiers::COMMAND, Key::Z);
     assert_eq!(lights(&window)[0].position(), before);
 
+    // Keys move the one that has the focus.
+    window.harness.get_by_role_and_label(Role::Button, "Move light").focus();
+    window.settle();
+    window.press(Modifiers::NONE, Key::ArrowRight);
+    assert!(lights(&window)[0].position()[0] > before[0]);
+    assert_eq!(window.document().settings.camera, camera);
+    window.press(Modifiers::COMMAND, Key::Z);
+
     // Beside the handles the hand orbits as ever.
     let corner = window.harness.get_by_role_and_label(Role::Image, "Picture").rect().right_bottom();
     drag(&mut window, corner - egui::vec2(60.0, 60.0), egui::vec2(-50.0, 0.0));

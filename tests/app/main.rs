@@ -3,13 +3,19 @@
 //! Without a graphics adapter the tests are skipped with a message, unless
 //! `FLAMBEAU_REQUIRE_WINDOW_TESTS=1` says that there has to be one.
 
+mod commands;
 mod compare;
+mod crop;
+mod diagnostics;
 mod display;
 mod film;
 mod keeping;
 mod lights;
+mod looks;
 mod reference;
 mod snapshots;
+mod start;
+mod story;
 mod surfaces;
 mod sweep;
 mod volume_panel;
@@ -66,16 +72,27 @@ impl Window {
 
     /// A window on a scene, with its data in `folder`; `None` without an adapter.
     fn start(folder: tempfile::TempDir, scene: &Path) -> Option<Self> {
+        Self::begin(folder, Some(scene), ([900.0, 600.0], 1.0))
+    }
+
+    /// A window of `size` points, `factor` pixels each, on a scene or on the default one.
+    fn begin(
+        folder: tempfile::TempDir,
+        scene: Option<&Path>,
+        (size, factor): ([f32; 2], f32),
+    ) -> Option<Self> {
         let state = render_state()?;
         let options = Options {
-            source: Some(scene.to_str().unwrap().to_owned()),
+            source: scene.map(|scene| scene.to_str().unwrap().to_owned()),
             threads: Some(1),
             dialogs: Dialogs::Typed,
             cleared: false,
+            pace: None,
             data: Some(folder.path().join("data")),
         };
         let renderer = WgpuTestRenderer::from_render_state(state.clone());
-        let harness = Harness::builder().with_size([900.0, 600.0]).renderer(renderer);
+        let harness = Harness::builder().with_size(size).with_pixels_per_point(factor);
+        let harness = harness.renderer(renderer);
         let frame = move |ui: &mut egui::Ui, app: &mut Option<App>| {
             let ctx = ui.ctx().clone();
             let app = app.get_or_insert_with(|| App::new(&ctx, &state, options.clone()).unwrap());
@@ -541,194 +558,4 @@ fn shown_picture(window: &mut Window) -> image::RgbaImage {
 fn differing(a: &image::RgbaImage, b: &image::RgbaImage, rows: std::ops::Range<u32>) -> usize {
     let pixels = std::iter::zip(a.enumerate_pixels(), b.pixels());
     pixels.filter(|((_, y, a), b)| rows.contains(y) && a != b).count()
-}
-
-#[test]
-fn cells_are_drawn_over_the_picture_and_follow_the_camera() {
-    let noise = r#"
-[[volume]]
-shape = "noise"
-translate = [0, 0, 1.2]
-frequency = 3.0
-density = { scale = 9.0 }
-"#;
-    let Some(mut window) = Window::open(&(BALL.to_owned() + noise)) else { return };
-    window.click(Role::Button, "Fixed");
-    window.until_finished();
-    let opened = window.document().clone();
-    let plain = shown_picture(&mut window);
-    let above_legend = 0..plain.height() - 110;
-    window.click(Role::DisclosureTriangle, "Diagnostics");
-    assert!(!window.has("Majorant, 1/length"), "nothing is drawn that was not asked for");
-
-    window.click(Role::Button, "Majorants");
-    window.until_it_says("Majorant, 1/length");
-    assert!(window.has(" cells"), "the legend counts them");
-    let drawn = shown_picture(&mut window);
-    assert!(differing(&plain, &drawn, above_legend.clone()) > 500, "no cells are drawn");
-    assert_eq!(window.document(), &opened, "what is shown is no edit");
-
-    // The camera moves: the same cells elsewhere.
-    let start = window.harness.get_by_role_and_label(Role::Image, "Picture").rect().center();
-    window.harness.drag_at(start);
-    window.harness.hover_at(start + egui::vec2(60.0, 0.0));
-    window.harness.drop_at(start + egui::vec2(60.0, 0.0));
-    window.harness.step();
-    window.until_finished();
-    assert!(window.has("Majorant, 1/length"));
-    let turned = shown_picture(&mut window);
-    assert!(differing(&drawn, &turned, above_legend) > 500);
-
-    window.click(Role::Button, "Off");
-    assert!(!window.has("Majorant, 1/length"));
-}
-
-/// The ball emits ε = μ_a · le with lum ε = 1.2 · (0.2126 · 2 + 0.7152 · 0.7 + 0.0722 · 0.2) = 1.128
-/// over 4π/3: a power of 4.726, in one cell.
-#[test]
-fn the_energy_of_cells_has_a_legend_with_numbers() {
-    let Some(mut window) = Window::open(BALL) else { return };
-    window.until_finished();
-    window.click(Role::DisclosureTriangle, "Diagnostics");
-    window.click(Role::Button, "Energy");
-    window.until_it_says("Emitted power per cell");
-    assert!(window.has("One cell"));
-    assert_eq!(window.harness.query_all_by_label("4.726").count(), 3, "both ends and the middle");
-
-    let smoke = BALL.replace("\"source\", le = [2.0, 0.7, 0.2]", "\"none\"");
-    let path = window.folder.path().join("smoke.toml");
-    std::fs::write(&path, smoke).unwrap();
-    window.harness.input_mut().dropped_files.push(Arc::new(Dropped(path)));
-    window.until_it_says("No volume here emits light.");
-}
-
-#[test]
-fn probes_are_drawn_over_the_picture_where_there_are_any() {
-    let Some(mut window) = Window::open(BALL) else { return };
-    window.click(Role::Button, "Fixed");
-    window.until_finished();
-    window.click(Role::DisclosureTriangle, "Diagnostics");
-    window.harness.remove_cursor();
-    window.settle();
-    let plain = shown_picture(&mut window);
-    window.click(Role::Button, "Probes");
-    window.until_it_says("Scattered light, radiance/length");
-    window.harness.remove_cursor();
-    window.settle();
-    let drawn = shown_picture(&mut window);
-    assert!(differing(&plain, &drawn, 0..plain.height() - 110) > 500, "no probes are drawn");
-    window.press(Modifiers::NONE, Key::Num5);
-    window.until_it_says("No probe here has light.");
-    window.click(Role::Button, "Off");
-    assert!(!window.has("Scattered light, radiance/length"));
-}
-
-/// The ray through the middle of the ball crosses 2 of μ_t = 2.
-#[test]
-fn a_click_looks_into_the_ray_of_a_pixel() {
-    let Some(mut window) = Window::open(BALL) else { return };
-    window.click(Role::Button, "Fixed");
-    window.until_finished();
-    let opened = window.document().clone();
-    window.click(Role::DisclosureTriangle, "Diagnostics");
-    window.click(Role::CheckBox, "Inspect a ray");
-    assert!(!window.has("optical depth"), "nothing is in the way before a pixel is picked");
-    let area = window.harness.get_by_role_and_label(Role::Image, "Picture").rect();
-    let click = |window: &mut Window, at: egui::Pos2| {
-        window.harness.drag_at(at);
-        window.harness.drop_at(at);
-        window.harness.step();
-        window.settle();
-    };
-    // The window of the ray lies below on the right.
-    let enlarged = (area.width() / 64.0).min(area.height() / 48.0).floor();
-    let pixel = |x: f32, y: f32| area.center() + enlarged * egui::vec2(x - 31.5, y - 23.5);
-    click(&mut window, pixel(32.0, 24.0));
-    window.until_it_says("Pixel 32, 24: optical depth 3.9");
-    assert!(window.has("Extinction 2") && window.has("Transmittance 1"));
-    assert_eq!(window.document(), &opened, "looking is no edit");
-
-    let plot = window.harness.get_by_role_and_label(Role::Image, "Shares along the ray, share");
-    let end = plot.rect().right_center() - egui::vec2(8.0, 0.0);
-    window.harness.hover_at(end);
-    window.settle();
-    let read = window
-        .harness
-        .get_by(|node| node.value().is_some_and(|value| value.starts_with("Transmittance ")));
-    let read = read.value().unwrap();
-    let transmittance: f32 = read["Transmittance ".len()..].parse().unwrap();
-    assert!((0.01..0.04).contains(&transmittance), "exp(−4) = 0.018 at the far end: {read}");
-
-    // Zoomed in, the pixel under the pointer is the one that is picked.
-    let corner = pixel(3.0, 3.0);
-    window.harness.hover_at(corner);
-    window.press(Modifiers::NONE, Key::Z);
-    window.press(Modifiers::NONE, Key::Z);
-    click(&mut window, corner);
-    window.until_it_says("this ray meets no medium");
-    window.click(Role::Button, "Close window");
-    assert!(!window.has("this ray meets no medium"));
-    click(&mut window, pixel(32.0, 24.0));
-    assert!(!window.has("optical depth"), "closed, clicks pick nothing");
-}
-
-#[test]
-fn the_map_of_steps_colors_each_pixel_by_what_it_costs() {
-    let Some(mut window) = Window::open(BALL) else { return };
-    window.click(Role::Button, "Fixed");
-    window.until_finished();
-    let plain = shown_picture(&mut window);
-    window.click(Role::DisclosureTriangle, "Diagnostics");
-    window.click(Role::CheckBox, "Map of tracking steps");
-    window.until("the steps are there", |app| {
-        app.engine().picture().is_some_and(|picture| !picture.layer.numbers.is_empty())
-    });
-    window.harness.remove_cursor();
-    window.settle();
-    let title = window.harness.get_by_label("Tracking steps per sample").rect();
-    let picture = window.app().engine().picture().unwrap().clone();
-    let scale = Scale::rounded(picture.layer.range.unwrap());
-    let area = window.harness.get_by_role_and_label(Role::Image, "Picture").rect();
-    let shown = window.harness.render().unwrap();
-    let enlarged = (area.width() / 64.0).min(area.height() / 48.0).floor();
-    let corner = (area.center() - enlarged * egui::vec2(32.0, 24.0)).round();
-    let mut bright = 0;
-    for (index, &steps) in picture.layer.numbers.iter().enumerate() {
-        let (x, y) = ((index % 64) as f32, (index / 64) as f32);
-        let at = corner + enlarged * egui::vec2(x + 0.5, y + 0.5);
-        if at.y > title.top() - 20.0 {
-            continue;
-        }
-        let expected = match steps > 0.0 {
-            true => ramp_color(scale.place(steps)).to_array(),
-            false => [0, 0, 0, 255],
-        };
-        let pixel = shown.get_pixel(at.x as u32, at.y as u32).0;
-        for channel in 0..3 {
-            let off = i32::from(expected[channel]) - i32::from(pixel[channel]);
-            assert!(off.abs() <= 1, "pixel {x},{y}: {expected:?} for {steps} steps, not {pixel:?}");
-        }
-        bright += i32::from(steps > 0.0);
-    }
-    assert!(bright > 500, "the ball costs nothing");
-
-    window.click(Role::CheckBox, "Map of tracking steps");
-    assert!(!window.has("Tracking steps per sample"));
-    window.harness.remove_cursor();
-    window.settle();
-    assert_eq!(differing(&plain, &shown_picture(&mut window), 0..plain.height()), 0);
-}
-
-#[test]
-fn the_window_looks_as_it_did() {
-    let Some(mut window) = Window::open(BALL) else { return };
-    window.click(Role::Button, "Fixed");
-    window.until_finished();
-    window.harness.remove_cursor();
-    window.settle();
-    // Seconds and collisions a second differ from run to run.
-    let status = egui::Rect::from_min_max(egui::pos2(70.0, 570.0), egui::pos2(560.0, 600.0));
-    window.harness.mask(status);
-    let options = SnapshotOptions::new().max_failed_pixels(20);
-    window.harness.snapshot_options("window", &options);
 }

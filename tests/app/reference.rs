@@ -4,8 +4,9 @@
 use flambeau::app::Measure;
 use flambeau::image::metrics::{Errors, Viewing};
 use flambeau::image::{Reference, npy};
+use flambeau::render::Area;
 use flambeau::render::Picture;
-use flambeau::render::compare::{Area, Comparison, Verdict};
+use flambeau::render::compare::{Comparison, Verdict};
 use glam::UVec2;
 
 use super::*;
@@ -246,10 +247,11 @@ fn dropped_pictures_are_opened_or_measured_against_as_one_chooses() {
     let gray = window.gray("gray.npy", [64, 48], 0.25);
     window.drop_file(gray);
     window.until("an array can only be a reference", |app| app.yardstick().held().is_some());
-    window.drop_file(scene);
-    window.until("the first reference is there again", |app| {
-        app.yardstick().held().is_some_and(|held| held.name == "kept.exr")
-    });
+    let is_first = |app: &App| app.yardstick().held().is_some_and(|held| held.name == "kept.exr");
+    window.drop_file(scene.clone());
+    window.until("the first reference is there again", is_first);
+    let mut window = window.restart(&scene);
+    window.until("it is there after a restart too", is_first);
     window.drop_file(exr);
     window.click(Role::Button, "Open it");
     window.until_it_says("it goes on from 16 spp");

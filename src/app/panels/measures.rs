@@ -12,7 +12,7 @@ use crate::app::theme::{color, space};
 use crate::app::widgets::key_of;
 use crate::app::yardstick::Yardstick;
 use crate::image::metrics::Errors;
-use crate::render::compare::Area;
+use crate::render::Area;
 use crate::scene::Settings;
 
 /// Width of a field for pixels.
@@ -52,6 +52,9 @@ pub fn rectangle(
     if ui.button("Remove").on_hover_text("Take the rectangle away.  [Esc]").clicked() {
         rectangle.remove();
     }
+    let alone = Command::SamplesHere;
+    let help = format!("{}  [{}]", alone.tooltip(), key_of(ui, alone));
+    ui.toggle_value(&mut rectangle.is_alone, "Samples only here").on_hover_text(help);
     let Some(part) = part else { return };
     match &part.comparison {
         Some(comparison) => compare::verdict(ui, Some(comparison), biased),

@@ -14,12 +14,12 @@ const VIEW: [&[Command]; 4] = [
     &[Command::FrameVolume, Command::FitPicture, Command::ZoomToPixels],
     &[Command::AutoExposure, Command::ExposureUp, Command::ExposureDown],
     &[Command::NextToneCurve, Command::FalseColor],
-    &[Command::FoldPanels],
+    &[Command::FoldPanels, Command::FullScreen],
 ];
 const COMPARE: [&[Command]; 5] = [
     &[Command::Compare, Command::NextLayout, Command::SaveComparison],
     &[Command::SwitchSide, Command::SwapSides, Command::CopySide],
-    &[Command::Rectangle],
+    &[Command::Rectangle, Command::SamplesHere],
     &[Command::LoadReference, Command::PictureAsReference, Command::RemoveReference],
     &[Command::Sweep],
 ];
@@ -29,7 +29,7 @@ const SNAPSHOTS: [&[Command]; 4] = [
     &[Command::CompareAsA, Command::CompareAsB],
     &[Command::ContinueSnapshot, Command::DeleteSnapshot, Command::UndoDelete],
 ];
-const HELP: [&[Command]; 1] = [&[Command::Palette, Command::Shortcuts]];
+const HELP: [&[Command]; 2] = [&[Command::Start], &[Command::Palette, Command::Shortcuts]];
 
 /// Shows the bar. `title` names what is open.
 pub fn show(ui: &mut Ui, panel: &mut Panel<'_>, title: &str) {

@@ -18,6 +18,7 @@ pub mod noise_plot;
 pub mod palette;
 pub mod placement;
 pub mod ramp;
+pub mod start;
 pub mod status;
 pub mod strategy;
 pub mod strip;

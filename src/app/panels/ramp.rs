@@ -3,14 +3,13 @@
 use std::ops::RangeInclusive;
 
 use egui::{
-    Color32, EventFilter, Id, Key, Mesh, Modifiers, Rect, Response, Sense, Shape, Stroke, Ui, pos2,
-    vec2,
+    Color32, Id, Key, Mesh, Modifiers, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2,
 };
 
 use super::grids::histogram_bars;
 use crate::app::stops::{self, Stop};
 use crate::app::theme::{color, space};
-use crate::app::widgets::{Number, from_rgb, key_help, scaled, strength, tint};
+use crate::app::widgets::{Number, arrow_steps, from_rgb, key_help, scaled, strength, tint};
 use crate::scene::VoxelDescription;
 use crate::scene::settings::Color;
 
@@ -157,10 +156,7 @@ impl Editor {
         index: usize,
         span: &RangeInclusive<f32>,
     ) -> bool {
-        let filter = EventFilter { horizontal_arrows: true, ..EventFilter::default() };
-        ui.memory_mut(|memory| memory.set_focus_lock_filter(id, filter));
-        let pressed = |key| ui.input(|input| input.num_presses(key)) as f32;
-        let steps = pressed(Key::ArrowRight) - pressed(Key::ArrowLeft);
+        let steps = arrow_steps(ui, id).x;
         if steps != 0.0 {
             let value = stops.get(index).map_or(0.0, |stop| stop[0]);
             let step = NUDGE * (span.end() - span.start());

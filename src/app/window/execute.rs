@@ -7,6 +7,7 @@ use super::App;
 use crate::app::commands::Command;
 use crate::app::files::Purpose;
 use crate::app::panels::palette::Palette;
+use crate::app::panels::start::Start;
 use crate::app::panels::strategy;
 use crate::image::tone::{Channel, auto_exposure};
 use crate::scene;
@@ -35,6 +36,13 @@ impl App {
                 self.viewport.toggle_pixel_zoom(size);
             }
             Command::AutoExposure => self.expose(),
+            Command::FullScreen => self.set_full_screen(ctx, !self.full_screen),
+            Command::Start => {
+                self.start = match self.start.take() {
+                    Some(_) => None,
+                    None => Some(Start::default()),
+                };
+            }
             Command::FoldPanels => self.folded = !self.folded,
             Command::Palette => {
                 self.palette = match self.palette.take() {
@@ -48,6 +56,12 @@ impl App {
             _ => self.edit(command),
         }
         ctx.request_repaint();
+    }
+
+    /// Gives the picture the whole screen, or menus and panels their place again.
+    pub(super) fn set_full_screen(&mut self, ctx: &Context, full: bool) {
+        self.full_screen = full;
+        ctx.send_viewport_cmd(egui::ViewportCommand::Fullscreen(full));
     }
 
     /// Commands that change the document.

@@ -144,6 +144,7 @@ impl App {
     pub(super) fn write_remembered(&mut self) -> crate::error::Result<()> {
         self.remembered.folded = self.folded;
         self.remembered.note_tone(self.editor.document.tone);
+        self.remembered.note_references(self.yardstick.remembered());
         match &self.data {
             Some(data) => self.remembered.write(data),
             None => Ok(()),

@@ -11,8 +11,10 @@ use crate::app::diagnostics::{Legend, show_legends};
 use crate::app::display::Look;
 use crate::app::files::typed;
 use crate::app::panels::bars::{self, Dropped, Typed};
-use crate::app::panels::palette::Choice;
+use crate::app::panels::palette;
+use crate::app::panels::start::Choice;
 use crate::app::panels::{self, Panel};
+use crate::app::remembered::Remembered;
 use crate::app::theme::{self, color, space};
 use crate::app::viewport::Shown;
 
@@ -39,15 +41,17 @@ impl App {
             reopened: &mut reopened,
             commands,
         };
-        let bar = plain.inner_margin(Margin::symmetric(8, 3));
-        egui::Panel::top("menu").frame(bar).show(ui, |ui| {
-            panels::menu::show(ui, &mut panel, &title);
-        });
-        let bar = plain.inner_margin(Margin::symmetric(8, 0));
-        egui::Panel::bottom("status").exact_size(space::STATUS).frame(bar).show(ui, |ui| {
-            panels::status::show(ui, &mut panel, edited, &self.viewport, &self.snapshots);
-        });
-        if !self.folded {
+        if !self.full_screen {
+            let bar = plain.inner_margin(Margin::symmetric(8, 3));
+            egui::Panel::top("menu").frame(bar).show(ui, |ui| {
+                panels::menu::show(ui, &mut panel, &title);
+            });
+            let bar = plain.inner_margin(Margin::symmetric(8, 0));
+            egui::Panel::bottom("status").exact_size(space::STATUS).frame(bar).show(ui, |ui| {
+                panels::status::show(ui, &mut panel, edited, &self.viewport, &self.snapshots);
+            });
+        }
+        if !self.folded && !self.full_screen {
             let film = self.viewport.film_size();
             column(ui, &mut panel, plain, film, self.largest);
         }
@@ -74,14 +78,19 @@ impl App {
         if let Some(wait) = self.viewport.resize(area, self.largest) {
             ui.ctx().request_repaint_after(wait);
         }
-        self.strip_row(ui);
+        if !self.full_screen {
+            self.start_row(ui);
+            self.strip_row(ui);
+        }
         self.path_bar_row(ui);
         drop_row(ui);
         self.dropped_row(ui);
         self.progress_row(ui);
         self.unsaved_row(ui);
         self.sweep_row(ui);
-        self.measure_rows(ui);
+        if !self.full_screen {
+            self.measure_rows(ui);
+        }
         if !self.notices.list().is_empty() {
             egui::Panel::bottom("notices")
                 .frame(theme::panel_frame())
@@ -158,12 +167,25 @@ impl App {
         }
     }
 
+    /// What to begin with, where it is wanted.
+    fn start_row(&mut self, ui: &mut Ui) {
+        let Some(start) = &mut self.start else { return };
+        let row = egui::Panel::bottom("start").frame(theme::panel_frame());
+        let Remembered { recent, start: again, .. } = &mut self.remembered;
+        match row.show(ui, |ui| start.show(ui, recent, again)).inner {
+            Some(Choice::Open(source)) => self.open_unless_lost(&source),
+            Some(Choice::Command(command)) => self.execute(&ui.ctx().clone(), command),
+            Some(Choice::Close) => self.start = None,
+            None => {}
+        }
+    }
+
     fn palette_window(&mut self, ui: &Ui, commands: &mut Vec<Command>) {
         let Some(palette) = &mut self.palette else { return };
         match palette.show(ui.ctx()) {
-            Choice::Pending => return,
-            Choice::Done(command) => commands.push(command),
-            Choice::Left => {}
+            palette::Choice::Pending => return,
+            palette::Choice::Done(command) => commands.push(command),
+            palette::Choice::Left => {}
         }
         self.palette = None;
     }

@@ -179,6 +179,13 @@ impl App {
         match command {
             Command::NextLayout => self.duel.layout = self.duel.layout.next(&self.layouts()),
             Command::Rectangle => self.rectangle.arm(),
+            Command::SamplesHere => {
+                self.rectangle.is_alone = !self.rectangle.is_alone;
+                if !self.rectangle.is_set() {
+                    self.rectangle.arm();
+                    self.rectangle.is_alone = true;
+                }
+            }
             Command::LoadReference => self.ask(ctx, Purpose::Reference),
             Command::PictureAsReference => self.take_picture(ctx),
             Command::RemoveReference => self.yardstick.remove(),

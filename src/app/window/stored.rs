@@ -82,11 +82,14 @@ impl App {
             Command::LivePicture if self.rectangle.is_armed() => {
                 self.rectangle.remove();
             }
+            Command::LivePicture if self.full_screen => self.set_full_screen(ctx, false),
             Command::LivePicture if self.snapshots.strip.shown().is_some() => {
                 self.snapshots.strip.show(None);
             }
             Command::LivePicture => {
-                self.rectangle.remove();
+                if !self.rectangle.remove() {
+                    self.start = None;
+                }
             }
             Command::CompareAsA => self.set_against_live(Side::A),
             Command::CompareAsB => self.set_against_live(Side::B),
