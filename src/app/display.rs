@@ -306,20 +306,31 @@ impl Pane {
         size: UVec2,
         format: wgpu::TextureFormat,
     ) -> (wgpu::Texture, wgpu::BindGroup) {
-        let texture = device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("picture"),
-            size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
-            view_formats: &[],
-        });
+        let usage = wgpu::TextureUsages::COPY_DST;
+        let texture = texture(device, "picture", (size, format), usage);
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
         let bindings = bind(device, layout, &self.view, &view);
         (texture, bindings)
     }
+}
+
+/// A texture that shaders read, and that has another use too.
+fn texture(
+    device: &wgpu::Device,
+    label: &str,
+    (size, format): (UVec2, wgpu::TextureFormat),
+    usage: wgpu::TextureUsages,
+) -> wgpu::Texture {
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | usage,
+        view_formats: &[],
+    })
 }
 
 /// Binds how a texture is looked at, and the texture.

@@ -124,6 +124,8 @@ impl Schedule {
             self.passes = passes.max(1);
             self.target = self.passes.saturating_add(1);
             self.next_tile = self.band().start;
+            // Whoever asked for it wants to see it at once.
+            self.pass_ended = true;
         }
     }
 

@@ -40,16 +40,8 @@ impl Canvas {
         (size, format): (UVec2, wgpu::TextureFormat),
         view: &wgpu::Buffer,
     ) -> Self {
-        let texture = device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("canvas"),
-            size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format,
-            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::RENDER_ATTACHMENT,
-            view_formats: &[],
-        });
+        let usage = wgpu::TextureUsages::RENDER_ATTACHMENT;
+        let texture = super::texture(device, "canvas", (size, format), usage);
         let target = texture.create_view(&wgpu::TextureViewDescriptor::default());
         let bindings = super::bind(device, layout, view, &target);
         Self { size, target, bindings }
