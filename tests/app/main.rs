@@ -274,6 +274,7 @@ fn probes_that_do_not_pay_say_so() {
         phase = { g = 0.8 }
     "#;
     let Some(mut window) = Window::open(cloud) else { return };
+    window.click(Role::Button, "Fixed");
     window.until_it_says("Not asked in this picture");
 }
 
