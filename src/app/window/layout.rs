@@ -231,8 +231,8 @@ fn drop_row(ui: &mut Ui) {
 
 /// The column of panels.
 fn column(ui: &mut Ui, panel: &mut Panel<'_>, frame: Frame, film: Option<UVec2>, largest: u32) {
-    let panel = egui::Panel::right("column").exact_size(space::COLUMN).resizable(false);
-    panel.frame(frame).show(ui, |ui| {
+    let place = egui::Panel::right("column").exact_size(space::COLUMN).resizable(false);
+    place.frame(frame).show(ui, |ui| {
         // A child of its own: contents that are too wide are cut off and push nothing aside.
         let room = ui.max_rect();
         let mut ui = ui.new_child(UiBuilder::new().max_rect(room));
