@@ -225,3 +225,21 @@ fn pictures_tell_the_same_as_their_films() {
         assert!(near(a, b), "{a} for {b}");
     }
 }
+
+/// Where a rectangle gets all samples, it is known by them, and the rest by what it has.
+#[test]
+fn a_rectangle_with_all_samples_is_known_better_than_the_rest() {
+    use crate::render::publish::Picture;
+    let area = Area { first: UVec2::new(3, 4), size: UVec2::new(9, 11) };
+    let pixels = vec![[1.0; 4]; (SIZE.x * SIZE.y) as usize];
+    let picture = Picture {
+        size: SIZE,
+        pixels,
+        fewest_samples: 1,
+        focus: Some((area, 40)),
+        ..Default::default()
+    };
+    let inside = Side::of_picture(&picture, Some(area));
+    assert_eq!((inside.fewest_samples, inside.samples_per_pixel), (40, 40.0));
+    assert_eq!(Side::of_picture(&picture, None).fewest_samples, 1);
+}
