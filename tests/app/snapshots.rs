@@ -208,6 +208,7 @@ fn a_snapshot_of_the_strip_is_gone_on_from() {
     // The density of before would be lost.
     window.click(Role::Button, "Open without saving");
     window.until_it_says("scene full: it goes on from 4 spp. The limit it had reached is lifted.");
+    window.settle();
     assert!(!window.has("Stored: "));
     let remembered = window.folder.path().join("data").join("window.json");
     let remembered: serde_json::Value =
