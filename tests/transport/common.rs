@@ -6,6 +6,7 @@
 //! 5 % in any of them is found with near certainty.
 
 use std::{
+    collections::BTreeSet,
     path::Path,
     sync::{Arc, Mutex},
 };
@@ -167,10 +168,24 @@ pub fn few_guides() -> Vec<Strategy> {
     every_guide().into_iter().filter(|s| all(&s.advanced) || none(&s.advanced)).collect()
 }
 
-/// Every third of some settings. Rows of [`finer`] come in eights, so that each row and each toggle
-/// is still among them; scenes with known values take these, and one scene takes all.
-pub fn a_third(settings: Vec<Strategy>) -> Vec<Strategy> {
-    settings.into_iter().step_by(3).collect()
+/// Every `n`th of some settings: scenes with known values take these, and one scene
+/// takes all. Each toggle is on and off among them, and each finer key has all its values.
+pub fn every_nth(n: usize, settings: impl IntoIterator<Item = Strategy>) -> Vec<Strategy> {
+    let all: Vec<Strategy> = settings.into_iter().collect();
+    let some: Vec<Strategy> = all.iter().copied().step_by(n).collect();
+    assert_eq!(choices(&some), choices(&all), "every {n}th leaves something out");
+    some
+}
+
+/// Each choice that is made in some settings, toggles and finer keys alike.
+fn choices(settings: &[Strategy]) -> BTreeSet<String> {
+    let of_one = |setting: &Strategy| {
+        let [toggles, finer] = [name(setting), full_name(setting)];
+        let toggles = toggles.char_indices().map(|(place, letter)| format!("{place} {letter}"));
+        let finer = finer.split(' ').skip(1).map(str::to_owned).collect::<Vec<_>>();
+        toggles.chain(finer).collect::<Vec<_>>()
+    };
+    settings.iter().flat_map(of_one).collect()
 }
 
 /// Every combination of the toggles with each row of [`finer`], those that are the same by
@@ -367,9 +382,9 @@ pub fn measure_enough(scene: &Scene, most: u32) -> Estimate {
     measure_to(scene, most, POWER, PathSample::beauty)
 }
 
-/// The same to 0.7 of [`POWER`], to hold others against.
+/// The same to half of [`POWER`], to hold others against.
 pub fn measure_closely(scene: &Scene, most: u32) -> Estimate {
-    measure_to(scene, most, 0.7 * POWER, PathSample::beauty)
+    measure_to(scene, most, 0.5 * POWER, PathSample::beauty)
 }
 
 /// The mean over the whole film of what `of` takes from each path, by so many paths as bring its

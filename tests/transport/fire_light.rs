@@ -7,7 +7,7 @@
 use std::f64::consts::{PI, TAU};
 
 use crate::common::{
-    Verdicts, a_third, build, every_setting, full_name, measure_enough, measure_to, with_strategy,
+    Verdicts, build, every_nth, every_setting, full_name, measure_enough, measure_to, with_strategy,
 };
 use flambeau::transport::{
     Scene,
@@ -427,7 +427,7 @@ fn fire_without_soot_lights_a_floor() {
     let expected = [1.0, 0.5, 2.0].map(|color| color * expected);
     // Unboosted, one look in ten or so finds a collision to read the emission at.
     let mut verdicts = Verdicts::of_power(0.02);
-    for setting in a_third(every_setting()) {
+    for setting in every_nth(3, every_setting()) {
         let paths = if setting.majorant_boost { 80_000 } else { 200_000 };
         check_direct(&mut verdicts, "no soot", &scene, &[setting], paths, expected);
     }
