@@ -54,7 +54,10 @@ impl Engine {
     /// Gives all samples to the pixels of `area` once every pixel has one, or to all pixels.
     pub fn focus(&mut self, area: Option<Area>) {
         let film = &self.film;
-        self.area = area.map(|area| area.within(film.size())).filter(|area| area.pixels() > 0);
+        let area = area.map(|area| area.within(film.size())).filter(|area| area.pixels() > 0);
+        if std::mem::replace(&mut self.area, area) == area {
+            return;
+        }
         let passes = match self.area {
             Some(area) => film.fewest_samples(area),
             None => film.sample_range().0,
