@@ -24,8 +24,8 @@ use pipelines::{Pipelines, Variant};
 struct View {
     origin: [f32; 2],
     step: f32,
-    /// Padding, as the shader aligns what follows.
-    unused: u32,
+    /// As the shader aligns what follows.
+    padding: u32,
     size: [u32; 2],
     canvas: [i32; 2],
     surround: [f32; 4],
@@ -197,7 +197,7 @@ impl Shot {
         View {
             origin: (-corner / self.placement.scale).into(),
             step: 1.0 / self.placement.scale,
-            unused: 0,
+            padding: 0,
             size: self.picture.size.into(),
             canvas: place.corner,
             surround: surround.to_array(),

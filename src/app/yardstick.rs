@@ -19,10 +19,9 @@ use super::state::Side;
 use crate::error::Result;
 use crate::image::metrics::{ErrorMap, Errors, Viewing};
 use crate::image::tone::Tone;
-use crate::render::Area;
-use crate::render::Picture;
 use crate::render::compare::NoiseHistory;
 use crate::render::pool::{Pool, Priority};
+use crate::render::{Area, Picture};
 use load::Loading;
 
 /// Measuring rests so many times as long as it took, for the machine is there to render.
