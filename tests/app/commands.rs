@@ -8,7 +8,43 @@ use super::*;
 
 const PALETTE: Modifiers = Modifiers { shift: true, ..Modifiers::COMMAND };
 
+/// What is compared, or looked at, while a command comes.
+#[derive(Clone, Copy, Debug)]
+enum State {
+    Strategies,
+    Snapshot,
+    Rectangle,
+}
+
 impl Window {
+    fn is_in(&self, state: State) -> bool {
+        match state {
+            State::Strategies => self.document().compared.is_some(),
+            State::Snapshot => self.app().duel().stored.is_some(),
+            State::Rectangle => self.app().rectangle().is_set(),
+        }
+    }
+
+    /// Brings it about, where the last command ended it.
+    fn bring_about(&mut self, state: State) {
+        if self.is_in(state) {
+            return;
+        }
+        self.close_what_is_open();
+        match state {
+            State::Strategies => self.press(Modifiers::NONE, Key::C),
+            State::Snapshot => {
+                self.press(Modifiers::NONE, Key::ArrowLeft);
+                self.press(Modifiers::SHIFT, Key::A);
+            }
+            State::Rectangle => {
+                self.press(Modifiers::NONE, Key::M);
+                self.click(Role::Button, "Place it");
+            }
+        }
+        assert!(self.is_in(state), "{state:?}");
+    }
+
     /// Closes what a command may have opened in front.
     fn close_what_is_open(&mut self) {
         for _ in 0..3 {
@@ -50,26 +86,18 @@ fn every_key_is_taken_while_strategies_and_snapshots_are_compared() {
     let Some(mut window) = Window::open(BALL) else { return };
     window.until_finished();
     window.keep("scene full");
-    for state in ["two strategies", "a snapshot", "a rectangle"] {
-        window.close_what_is_open();
-        match state {
-            "two strategies" => window.press(Modifiers::NONE, Key::C),
-            "a snapshot" => {
-                window.press(Modifiers::NONE, Key::ArrowLeft);
-                window.press(Modifiers::SHIFT, Key::A);
-            }
-            _ => {
-                window.press(Modifiers::NONE, Key::M);
-                window.click(Role::Button, "Place it");
-            }
-        }
+    for state in [State::Strategies, State::Snapshot, State::Rectangle] {
         for command in Command::ALL {
+            // Right behind the command that deletes it.
+            if command != Command::UndoDelete {
+                window.bring_about(state);
+            }
             let shortcut = command.shortcut();
             window.press(shortcut.modifiers, shortcut.logical_key);
             if window.harness.query_by_role_and_label(Role::TextInput, "Path").is_some() {
                 window.close_what_is_open();
             }
+            assert!(window.app().engine().picture().is_some(), "{state:?}, {}", command.text());
         }
-        assert!(window.app().engine().picture().is_some(), "{state}");
     }
 }

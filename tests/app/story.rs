@@ -98,9 +98,9 @@ fn a_morning_with_the_window() {
     // The next day.
     let mut window = window.restart(&exr);
     assert!(window.has("it goes on from"), "{:?}", window.app().notices().list());
-    window.until("samples are added", |app| {
-        let paths = app.engine().picture().map_or(0, |picture| picture.stats.paths);
-        app.engine().is_current() && paths > kept.totals.paths
-    });
+    window.until("there is a picture", |app| app.engine().is_current());
+    let paths = |app: &App| app.engine().picture().unwrap().stats.paths;
+    assert!(paths(window.app()) >= kept.totals.paths, "it begins where it ended");
+    window.until("samples are added", |app| paths(app) > kept.totals.paths);
     assert_eq!(window.document().settings.volume[0].density.scale.gray(), Some(4.0));
 }
