@@ -71,32 +71,32 @@ pub struct Noise {
 impl Noise {
     /// The value at a point.
     pub fn at(&self, p: Vec3A) -> f32 {
-        let sum = self.octave_sum(|noise, octave, scale| noise.lattice_noise(octave, scale * p));
-        self.shaped(sum)
+        let (mut sum, mut total) = (0.0, 0.0);
+        for Octave { index, scale, weight } in self.octaves() {
+            sum += weight * self.lattice_noise(index, scale * p);
+            total += weight;
+        }
+        self.shaped(sum / total)
     }
 
     /// Bounds over a box, from the lattice values around it.
     pub fn range(&self, region: &Aabb) -> (f32, f32) {
-        let bound = |upper: bool| {
-            let sum = self.octave_sum(|noise, octave, scale| {
-                let (min, max) =
-                    noise.lattice_range(octave, scale * region.min, scale * region.max);
-                if upper { max } else { min }
-            });
-            self.shaped(sum)
-        };
-        (bound(false), bound(true))
+        let (mut low, mut high, mut total) = (0.0, 0.0, 0.0);
+        for Octave { index, scale, weight } in self.octaves() {
+            let (min, max) = self.lattice_range(index, scale * region.min, scale * region.max);
+            low += weight * min;
+            high += weight * max;
+            total += weight;
+        }
+        (self.shaped(low / total), self.shaped(high / total))
     }
 
-    fn octave_sum(&self, mut octave_value: impl FnMut(&Self, u32, f32) -> f32) -> f32 {
-        let (mut sum, mut total, mut weight, mut scale) = (0.0, 0.0, 1.0, self.frequency);
-        for octave in 0..self.octaves {
-            sum += weight * octave_value(self, octave, scale);
-            total += weight;
-            weight *= 0.5;
-            scale *= 2.0;
-        }
-        sum / total
+    fn octaves(&self) -> impl Iterator<Item = Octave> {
+        let first = Octave { index: 0, scale: self.frequency, weight: 1.0 };
+        let finer = |&Octave { index, scale, weight }: &Octave| {
+            Some(Octave { index: index + 1, scale: 2.0 * scale, weight: 0.5 * weight })
+        };
+        std::iter::successors(Some(first), finer).take(self.octaves as usize)
     }
 
     fn shaped(&self, value: f32) -> f32 {
@@ -105,15 +105,7 @@ impl Noise {
 
     fn lattice_noise(&self, octave: u32, p: Vec3A) -> f32 {
         let floor = p.floor();
-        self.cell_noise(octave, floor.as_ivec3(), p - floor)
-    }
-
-    /// The noise at offset `f` in [0, 1]³ from the low corner of a lattice cell.
-    fn cell_noise(&self, octave: u32, cell: IVec3, f: Vec3A) -> f32 {
-        let s = f * f * (Vec3A::splat(3.0) - 2.0 * f);
-        let corner = |x, y, z| self.lattice_value(octave, cell + IVec3::new(x, y, z));
-        let along_x = |y, z| lerp(corner(0, y, z), corner(1, y, z), s.x);
-        lerp(lerp(along_x(0, 0), along_x(1, 0), s.y), lerp(along_x(0, 1), along_x(1, 1), s.y), s.z)
+        self.lattice_cell(octave, floor.as_ivec3()).at(p - floor)
     }
 
     /// Within a lattice cell the noise is affine in the eased coordinate of each axis, so that its
@@ -130,11 +122,12 @@ impl Noise {
             for y in low.y..=high.y {
                 for x in low.x..=high.x {
                     let cell = IVec3::new(x, y, z);
+                    let noise = self.lattice_cell(octave, cell);
                     let corner = cell.as_vec3a();
                     let inside =
                         Aabb::new(min.max(corner) - corner, max.min(corner + 1.0) - corner);
                     for offset in inside.corners() {
-                        let value = self.cell_noise(octave, cell, offset);
+                        let value = noise.at(offset);
                         range = (range.0.min(value), range.1.max(value));
                     }
                 }
@@ -143,16 +136,48 @@ impl Noise {
         range
     }
 
-    fn lattice_value(&self, octave: u32, p: IVec3) -> f32 {
-        let mut hash = self.seed ^ octave.wrapping_mul(0x9e37_79b9);
-        for coordinate in [p.x, p.y, p.z] {
-            hash = (hash ^ coordinate as u32).wrapping_mul(0x85eb_ca6b);
-            hash ^= hash >> 15;
-            hash = hash.wrapping_mul(0xc2b2_ae35);
-            hash ^= hash >> 13;
-        }
-        (hash >> 8) as f32 * (1.0 / (1 << 24) as f32)
+    /// The cell of an octave's lattice with `low` as its low corner. Corners share what they have
+    /// in common of their coordinates, as far as it is hashed first.
+    fn lattice_cell(&self, octave: u32, low: IVec3) -> LatticeCell {
+        let hash = self.seed ^ octave.wrapping_mul(0x9e37_79b9);
+        let both = |hash, low: i32| [low, low.wrapping_add(1)].map(|at| hashed(hash, at as u32));
+        let corners = both(hash, low.x).map(|hash| {
+            both(hash, low.y)
+                .map(|hash| both(hash, low.z).map(|hash| (hash >> 8) as f32 / (1 << 24) as f32))
+        });
+        LatticeCell { corners }
     }
+}
+
+/// One octave of a [`Noise`].
+struct Octave {
+    index: u32,
+    /// Lattice points per length.
+    scale: f32,
+    weight: f32,
+}
+
+/// A cell of a random lattice.
+struct LatticeCell {
+    /// Its values by x, y and z.
+    corners: [[[f32; 2]; 2]; 2],
+}
+
+impl LatticeCell {
+    /// The noise at offset `f` in [0, 1]³ from the low corner.
+    fn at(&self, f: Vec3A) -> f32 {
+        let s = f * f * (Vec3A::splat(3.0) - 2.0 * f);
+        let [low, high] = &self.corners;
+        let along_x = |y: usize, z: usize| lerp(low[y][z], high[y][z], s.x);
+        lerp(lerp(along_x(0, 0), along_x(1, 0), s.y), lerp(along_x(0, 1), along_x(1, 1), s.y), s.z)
+    }
+}
+
+/// Mixes one more coordinate into a hash.
+fn hashed(hash: u32, coordinate: u32) -> u32 {
+    let hash = (hash ^ coordinate).wrapping_mul(0x85eb_ca6b);
+    let hash = (hash ^ (hash >> 15)).wrapping_mul(0xc2b2_ae35);
+    hash ^ (hash >> 13)
 }
 
 fn lerp(a: f32, b: f32, t: f32) -> f32 {
