@@ -35,6 +35,8 @@ pub struct Remembered {
     exposure: f32,
     /// White balance in kelvin; 0 where none was chosen.
     white: f32,
+    /// Its tint.
+    tint: f32,
 }
 
 impl Default for Remembered {
@@ -47,6 +49,7 @@ impl Default for Remembered {
             curve: String::new(),
             exposure: 0.0,
             white: 0.0,
+            tint: 0.0,
         }
     }
 }
@@ -96,6 +99,7 @@ impl Remembered {
             curve: curve.unwrap_or_default(),
             exposure: sane(self.exposure, 0.0).clamp(-20.0, 20.0),
             white: sane(self.white, plain.white),
+            tint: sane(self.tint, plain.tint),
             ..plain
         }
     }
@@ -105,6 +109,7 @@ impl Remembered {
         self.curve = tone.curve.name().to_owned();
         self.exposure = tone.exposure;
         self.white = tone.white;
+        self.tint = tone.tint;
     }
 }
 
@@ -128,7 +133,8 @@ mod tests {
         let data = folder.path().join("data");
         assert_eq!(Remembered::read(&data), Remembered::default());
         assert_eq!(Remembered::default().tone(), Tone::default());
-        let tone = Tone { exposure: -1.5, white: 3200.0, curve: ToneCurve::Agx, ..Tone::default() };
+        let (white, tint, curve) = (3200.0, 12.0, ToneCurve::Agx);
+        let tone = Tone { exposure: -1.5, white, tint, curve, ..Tone::default() };
         let mut remembered = Remembered { folded: true, ..Remembered::default() };
         remembered.note_tone(Tone { channel: Channel::FalseColor, ..tone });
         remembered.note("/shots/torch.toml");

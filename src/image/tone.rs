@@ -68,6 +68,9 @@ pub struct Tone {
     /// Color temperature of the light that is shown white, in kelvin; [`white::NEUTRAL`] changes
     /// nothing.
     pub white: f32,
+    /// How much greener than a black body that light is, from -150 to 150; less than 0: more
+    /// magenta.
+    pub tint: f32,
     /// The curve after exposure.
     pub curve: ToneCurve,
     /// What of the color is shown.
@@ -79,6 +82,7 @@ impl Default for Tone {
         Self {
             exposure: 0.0,
             white: white::NEUTRAL,
+            tint: 0.0,
             curve: ToneCurve::default(),
             channel: Channel::default(),
         }
@@ -88,7 +92,7 @@ impl Default for Tone {
 impl Tone {
     /// From linear colors to white-balanced, exposed ones.
     pub fn exposed_from_linear(self) -> Mat3A {
-        white::balance(self.white) * self.exposure.exp2()
+        white::balance(self.white, self.tint) * self.exposure.exp2()
     }
 
     /// What turns linear colors into codes.
@@ -138,6 +142,7 @@ mod tests {
     const LINEAR: Tone = Tone {
         exposure: 0.0,
         white: white::NEUTRAL,
+        tint: 0.0,
         curve: ToneCurve::Linear,
         channel: Channel::Color,
     };

@@ -41,6 +41,10 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
         if balance(reset).show_as(ui, &mut tone.white, WHITE_HELP, limits) {
             edit = Some("white balance");
         }
+        let limits = white::TINTS.map(f64::from);
+        if tint(reset).show_as(ui, &mut tone.tint, TINT_HELP, limits) {
+            edit = Some("tint");
+        }
         if curve(ui, tone) {
             edit = Some("tone curve");
         }
@@ -61,6 +65,9 @@ const WHITE_HELP: &str = "Color temperature of the light that is shown white. 65
                           as they are; 2500 K makes a torch white and daylight blue. For display and \
                           PNG only.";
 
+const TINT_HELP: &str = "How green the light is that is shown white: more takes green out of the \
+                         picture, less takes magenta out. For display and PNG only.";
+
 fn exposure(reset: Tone) -> Number<'static> {
     Number {
         name: "Exposure",
@@ -80,6 +87,17 @@ fn balance(reset: Tone) -> Number<'static> {
         logarithmic: true,
         unit: " K",
         reset: reset.white,
+    }
+}
+
+fn tint(reset: Tone) -> Number<'static> {
+    Number {
+        name: "Tint",
+        key: "",
+        soft: white::TINTS[0]..=white::TINTS[1],
+        logarithmic: false,
+        unit: "",
+        reset: reset.tint,
     }
 }
 

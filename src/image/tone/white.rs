@@ -1,6 +1,6 @@
 //! White balance: which light is shown white.
 
-use glam::{Mat3A, Vec3A};
+use glam::{Mat3A, Vec2, Vec3A};
 
 use crate::math::{Rgb, luminance};
 
@@ -8,6 +8,11 @@ use crate::math::{Rgb, luminance};
 pub const NEUTRAL: f32 = 6500.0;
 /// Temperatures that can be balanced, in kelvin: those of the formula for the Planckian locus.
 pub const RANGE: [f32; 2] = [1667.0, 25_000.0];
+
+/// Tints that can be balanced.
+pub const TINTS: [f32; 2] = [-150.0, 150.0];
+/// One unit of tint, as a distance in the CIE 1960 (u, v) diagram; the unit of raw converters.
+const TINT_UNIT: f32 = 1.0 / 3000.0;
 
 /// Linear Rec.709 from CIE XYZ, column by column (IEC 61966-2-1).
 const RGB_FROM_XYZ: Mat3A = Mat3A::from_cols(
@@ -22,14 +27,15 @@ const CONES_FROM_XYZ: Mat3A = Mat3A::from_cols(
     Vec3A::new(-0.1614, 0.0367, 1.0296),
 );
 
-/// Takes the light of a black body at `kelvin` to that of one at [`NEUTRAL`], and all other colors
-/// along: von Kries adaptation of Bradford's cone responses. Temperatures out of [`RANGE`] are taken
-/// as its ends.
-pub fn balance(kelvin: f32) -> Mat3A {
-    if kelvin == NEUTRAL {
+/// Takes the light of a black body at `kelvin`, greener by `tint` (more magenta where that is
+/// negative), to that of one at [`NEUTRAL`], and all other colors along: von Kries adaptation of
+/// Bradford's cone responses. What is out of [`RANGE`] and [`TINTS`] is taken as their ends.
+pub fn balance(kelvin: f32, tint: f32) -> Mat3A {
+    if kelvin == NEUTRAL && tint == 0.0 {
         return Mat3A::IDENTITY;
     }
-    let [from, to] = [kelvin, NEUTRAL].map(|kelvin| CONES_FROM_XYZ * xyz_of(kelvin));
+    let tinted = xyz_of_uv(tinted(kelvin, tint));
+    let [from, to] = [tinted, xyz_of(NEUTRAL)].map(|xyz| CONES_FROM_XYZ * xyz);
     let adapt = Mat3A::from_diagonal((to / from).into());
     let cones_from_rgb = CONES_FROM_XYZ * RGB_FROM_XYZ.inverse();
     cones_from_rgb.inverse() * adapt * cones_from_rgb
@@ -38,8 +44,28 @@ pub fn balance(kelvin: f32) -> Mat3A {
 /// Linear color of luminance 1 of a black body at `kelvin`, relative to one at [`NEUTRAL`], which
 /// is white.
 pub fn of_temperature(kelvin: f32) -> Rgb {
-    let color = balance(kelvin).inverse() * Rgb::ONE;
+    let color = balance(kelvin, 0.0).inverse() * Rgb::ONE;
     color / luminance(color)
+}
+
+/// CIE 1960 (u, v) of a light `tint` units above the locus of black bodies, at `kelvin`.
+fn tinted(kelvin: f32, tint: f32) -> Vec2 {
+    let kelvin = kelvin.clamp(RANGE[0], RANGE[1]);
+    let [colder, on_locus, hotter] =
+        [kelvin / 1.01, kelvin, kelvin * 1.01].map(|kelvin| uv_of_xyz(xyz_of(kelvin)));
+    let along = hotter - colder;
+    // Along the locus u falls, so that this side of it is the green one.
+    let green = Vec2::new(along.y, -along.x).normalize();
+    on_locus + tint.clamp(TINTS[0], TINTS[1]) * TINT_UNIT * green
+}
+
+fn uv_of_xyz(xyz: Vec3A) -> Vec2 {
+    Vec2::new(4.0 * xyz.x, 6.0 * xyz.y) / xyz.dot(Vec3A::new(1.0, 15.0, 3.0))
+}
+
+/// CIE XYZ of luminance 1.
+fn xyz_of_uv(uv: Vec2) -> Vec3A {
+    Vec3A::new(3.0 * uv.x, 2.0 * uv.y, 4.0 - uv.x - 10.0 * uv.y) / (2.0 * uv.y)
 }
 
 /// CIE XYZ of luminance 1 of a black body: the cubic fit of Kim et al. (US patent 7024034, 2006).
@@ -84,10 +110,24 @@ mod tests {
 
     #[test]
     fn neutral_changes_nothing_and_others_keep_finite() {
-        assert_eq!(balance(NEUTRAL), Mat3A::IDENTITY);
-        assert!(balance(NEUTRAL + 0.01).abs_diff_eq(Mat3A::IDENTITY, 1e-4));
+        assert_eq!(balance(NEUTRAL, 0.0), Mat3A::IDENTITY);
+        assert!(balance(NEUTRAL + 0.01, 0.0).abs_diff_eq(Mat3A::IDENTITY, 1e-4));
+        assert!(balance(NEUTRAL, 0.01).abs_diff_eq(Mat3A::IDENTITY, 1e-4));
         for kelvin in [0.0, 1667.0, 4000.0, 25_000.0, f32::INFINITY] {
-            assert!(balance(kelvin).is_finite(), "{kelvin}");
+            for tint in [f32::NEG_INFINITY, 0.0, 150.0] {
+                assert!(balance(kelvin, tint).is_finite(), "{kelvin} {tint}");
+            }
         }
+    }
+
+    /// D65 lies 0.0032 above the locus at 6504 K (CIE 15, appendix E: (x, y) = (0.3127, 0.3290)).
+    #[test]
+    fn daylight_is_a_greener_black_body() {
+        let d65 = Vec3A::new(0.3127, 0.3290, 0.3583) / 0.3290;
+        let away = uv_of_xyz(d65).distance(tinted(6504.0, 0.0032 * 3000.0));
+        assert!(away < 2e-4, "off by {away}");
+        let shown = balance(6504.0, 9.6) * (RGB_FROM_XYZ * d65);
+        let plain = balance(6504.0, 0.0) * (RGB_FROM_XYZ * d65);
+        assert!((shown / shown.y - plain / plain.y).x > 0.01, "a green light is not made gray");
     }
 }
