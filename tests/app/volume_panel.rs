@@ -144,3 +144,39 @@ fn a_volume_is_placed_and_a_shape_measured() {
     assert_eq!((placed.scale.axes(), placed.radius()), ([0.5; 3], 1.5));
     until_accepted(&mut window);
 }
+
+#[test]
+fn one_of_two_hundred_volumes_is_found_by_its_name() {
+    let street = Path::new("builtin:street");
+    let Some(mut window) = Window::start(tempfile::tempdir().unwrap(), street) else { return };
+    window.press(Modifiers::NONE, Key::Space);
+    window.until_it_says("left 1");
+    assert!(!window.has("right 77"), "the list is short");
+    find(&mut window, "RIGHT 77");
+    window.click(Role::Button, "right 77");
+    let density = |window: &Window| {
+        let volumes = &window.document().settings.volume;
+        let named = volumes.iter().find(|volume| volume.name == "right 77").unwrap();
+        named.density.scale
+    };
+    let before = density(&window);
+    window.harness.get_by_role_and_label(Role::Slider, "Density").set_value_accesskit(3.0);
+    window.settle();
+    assert_ne!(density(&window), before);
+    window.press(Modifiers::COMMAND, Key::Z);
+    assert_eq!(density(&window), before);
+    find(&mut window, "nobody");
+    assert!(window.has("None is called so."));
+}
+
+/// Types into the field over the list of volumes.
+fn find(window: &mut Window, text: &str) {
+    // Which brings it and the list into sight.
+    window.harness.get_by_role_and_label(Role::TextInput, "Find a volume").focus();
+    window.harness.step();
+    window.settle();
+    let field = window.harness.get_by_role_and_label(Role::TextInput, "Find a volume");
+    field.set_text_value_accesskit(text);
+    window.harness.step();
+    window.settle();
+}

@@ -3,6 +3,7 @@
 pub mod advanced;
 pub mod bars;
 pub mod camera;
+mod chooser;
 pub mod compare;
 pub mod diagnostics;
 pub mod display;

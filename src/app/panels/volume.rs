@@ -2,7 +2,7 @@
 
 use egui::{CollapsingHeader, RichText, Ui};
 
-use super::{Panel, emission, explain, grids, placement, section};
+use super::{Panel, chooser, emission, explain, grids, placement, section};
 use crate::app::state::Document;
 use crate::app::theme::color;
 use crate::app::up_axis;
@@ -10,24 +10,34 @@ use crate::app::widgets::{Number, capitalized, color_rows, key_help, row, segmen
 use crate::scene::settings::{Albedo, Axis, Color, VolumeSettings};
 use crate::scene::{About, GridDescription, Note, Program, Settings};
 
+/// The most volumes that are listed with all that can be said of them, unfolded or not.
+const MOST_UNFOLDED: usize = 12;
+
 /// Shows the section.
 pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
     section(ui, "Volume", |ui| {
-        let volumes = panel.editor.document.settings.volume.len();
-        if volumes == 0 {
-            ui.weak("There is no volume in this scene.");
-        }
+        let volumes = panel.editor.document.settings.volume.iter().enumerate();
+        let titles: Vec<String> = volumes.map(|(index, volume)| title(volume, index)).collect();
         notes(ui, panel);
-        for index in 0..volumes {
-            let title = title(&panel.editor.document.settings.volume[index], index);
-            if volumes == 1 {
+        match &titles[..] {
+            [] => drop(ui.weak("There is no volume in this scene.")),
+            [title] => {
                 ui.label(RichText::new(title).color(color::TEXT_STRONG));
-                one(ui, panel, index);
-            } else {
-                CollapsingHeader::new(title)
-                    .id_salt(("volume", index))
-                    .default_open(volumes < 4)
-                    .show(ui, |ui| one(ui, panel, index));
+                one(ui, panel, 0);
+            }
+            many if many.len() > MOST_UNFOLDED => {
+                let index = chooser::choose(ui, "volume", many);
+                ui.label(RichText::new(&many[index]).color(color::TEXT_STRONG));
+                // What is folded or typed in one is not that of the next.
+                ui.push_id(("volume", index), |ui| one(ui, panel, index));
+            }
+            several => {
+                for (index, title) in several.iter().enumerate() {
+                    CollapsingHeader::new(title)
+                        .id_salt(("volume", index))
+                        .default_open(several.len() < 4)
+                        .show(ui, |ui| one(ui, panel, index));
+                }
             }
         }
     });
