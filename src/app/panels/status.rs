@@ -118,9 +118,25 @@ fn progress(ui: &mut Ui, stats: &RenderStats, engine: &Engine) {
         (true, _) => "paused",
         (false, false) if engine.held() => "waiting",
         (false, true) => "finished",
-        (false, false) => return,
+        (false, false) => return time_left(ui, stats, engine),
     };
     ui.label(RichText::new(state).color(color::ACCENT));
+}
+
+/// How long a render with an end will take to get there.
+fn time_left(ui: &mut Ui, stats: &RenderStats, engine: &Engine) {
+    let wanted = engine.built().map_or(0, |built| built.settings.film.spp);
+    let Some(left) = seconds_left(stats, wanted) else { return };
+    let left = if left < 60.0 { format!("{:.0} s", left.ceil()) } else { seconds(left) };
+    let text = RichText::new(format!("{left} left")).color(color::TEXT_DIM);
+    ui.label(text).on_hover_text(format!("Until each pixel has {wanted} samples."));
+}
+
+/// At the pace so far; none before there is one, and where there is no end.
+fn seconds_left(stats: &RenderStats, wanted: u32) -> Option<f64> {
+    let have = stats.samples_per_pixel;
+    let is_known = wanted > 0 && have >= 1.0;
+    is_known.then(|| stats.seconds * (f64::from(wanted) / have - 1.0).max(0.0))
 }
 
 /// A number set to the right in a field of fixed width, so that nothing jumps, with its unit.
@@ -242,5 +258,20 @@ fn display(ui: &mut Ui, panel: &mut Panel<'_>) {
     ui.label(RichText::new("exposure").color(color::TEXT_DIM));
     if let Some(name) = edit {
         panel.editor.name_edit(name);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_time_left_is_that_of_the_samples_left() {
+        let stats = RenderStats { samples_per_pixel: 16.0, seconds: 8.0, ..Default::default() };
+        assert_eq!(seconds_left(&stats, 64), Some(24.0));
+        assert_eq!(seconds_left(&stats, 16), Some(0.0));
+        assert_eq!(seconds_left(&stats, 0), None, "there is no end");
+        let stats = RenderStats { samples_per_pixel: 0.2, ..stats };
+        assert_eq!(seconds_left(&stats, 64), None, "the pace is not known yet");
     }
 }
