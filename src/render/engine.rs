@@ -7,7 +7,9 @@ use super::area::Area;
 use super::estimate::samples_per_pixel;
 use super::film::Film;
 use super::pool::{Failure, Pool};
-use super::publish::{Extras, Picture, RenderStats, render_stats, resolve, resolve_variance};
+use super::publish::{
+    Extras, Picture, RenderStats, render_stats, resolve, resolve_blocks, resolve_variance,
+};
 use super::schedule::{Limits, Next, Schedule};
 use crate::transport::PixelSampler;
 
@@ -115,19 +117,26 @@ impl Engine {
     /// Reads the film into `picture`, with the extras that are wanted; its generation stays.
     pub fn read(&mut self, pool: &Pool, extras: Extras, picture: &mut Picture) {
         let start = Instant::now();
-        let film = &self.film;
+        let (film, blocks, is_complete) = (&self.film, self.schedule.blocks(), self.is_complete());
         let noise = pool.install(|| {
             picture.layer.read(film, extras.layer);
-            match extras.variance {
-                true => resolve_variance(film, &mut picture.variance),
-                false => picture.variance = Vec::new(),
+            match (extras.variance, is_complete) {
+                (true, true) => resolve_variance(film, &mut picture.variance),
+                // There is none yet; the memory is for the next picture.
+                (true, false) => picture.variance.clear(),
+                (false, _) => picture.variance = Vec::new(),
+            }
+            if blocks > 1 {
+                resolve_blocks(film, blocks, &mut picture.pixels);
+                return None;
             }
             resolve(film, &mut picture.pixels)
         });
         let cost = start.elapsed().as_secs_f64();
         self.seconds += cost;
         self.schedule.published(self.seconds, cost);
-        (picture.size, picture.complete) = (self.film.size(), self.is_complete());
+        (picture.size, picture.complete) = (self.film.size(), is_complete);
+        picture.block_log2 = blocks.ilog2();
         picture.fewest_samples = self.film.sample_range().0;
         picture.focus = self.area.map(|area| (area, self.film.fewest_samples(area)));
         picture.stats = RenderStats {

@@ -118,7 +118,7 @@ impl Pool {
                 .par_chunks_mut(TILE as usize)
                 .zip(sums.par_chunks_mut(TILE as usize))
                 .enumerate()
-                .with_max_len(1)
+                .with_max_len(rows_at_once(work.stride))
                 .map(|(index, (counts, sums))| {
                     row.sample(first_row + index, counts, sums, &failure)
                 })
@@ -128,6 +128,11 @@ impl Pool {
         let failure = failure.into_inner().unwrap_or_else(PoisonError::into_inner);
         Outcome { totals, cpu_seconds, complete: complete && failure.is_none(), failure }
     }
+}
+
+/// How many rows of a tile a thread takes at once: a path or more at that stride.
+fn rows_at_once(stride: u32) -> usize {
+    (stride * stride / TILE).max(1) as usize
 }
 
 /// What was done of some rows.

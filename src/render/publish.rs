@@ -7,7 +7,7 @@ use super::area::Area;
 use super::estimate::{FilmStats, LineStats, PixelEstimate, samples_per_pixel};
 use super::film::Film;
 use super::layers::{Layer, LayerMap};
-use super::schedule::representative;
+use super::schedule::{COARSEST_STRIDE, representative};
 
 /// A finished image of an unfinished render.
 #[derive(Clone, Debug, Default)]
@@ -25,10 +25,13 @@ pub struct Picture {
     /// The rectangle that gets all samples, and those of its pixel that has fewest.
     pub focus: Option<(Area, u32)>,
     /// Variance of the gray mean of each pixel, and the variance of that; row 0 on top, NaN below two
-    /// samples; empty unless asked for.
+    /// samples; empty unless asked for, and while pixels have no sample.
     pub variance: Vec<[f32; 2]>,
     /// Whether every pixel has at least one sample of its own.
     pub complete: bool,
+    /// Blocks of 2 to this power pixels squared are of one color each, so that one pixel of each
+    /// tells all; 0: any pixel may differ from the next.
+    pub block_log2: u32,
     /// Figures at the time it was made.
     pub stats: RenderStats,
 }
@@ -79,8 +82,8 @@ pub struct RenderStats {
 /// The pixel to read in place of `pixel`: itself once it has a sample, or the one that stands for
 /// the smallest sampled block around it.
 pub fn shown_pixel(film: &Film, pixel: UVec2) -> UVec2 {
-    [1, 2, 4, 8, 16]
-        .into_iter()
+    (0..=COARSEST_STRIDE.ilog2())
+        .map(|power| 1 << power)
         .map(|stride| representative(pixel, stride, film.size()))
         .find(|&candidate| film.samples(candidate) > 0)
         .unwrap_or(pixel)
@@ -97,6 +100,33 @@ pub fn resolve(film: &Film, pixels: &mut Vec<[f32; 4]>) -> Option<f64> {
         .map(|(y, line)| resolve_line(film, y as u32, line))
         .collect();
     FilmStats::from_lines(film, &lines).noise
+}
+
+/// Reads a picture of blocks of `side`² pixels into `pixels`, which gets the size of the film: what
+/// [`resolve`] says of a film that has just the samples of the stride `side`, for less. Runs on the
+/// threads of the calling pool.
+pub fn resolve_blocks(film: &Film, side: u32, pixels: &mut Vec<[f32; 4]>) {
+    let size = film.size();
+    let width = size.x as usize;
+    pixels.resize(width * size.y as usize, [0.0; 4]);
+    pixels.par_chunks_mut(width * side as usize).enumerate().for_each(|(row, lines)| {
+        let (first, others) = lines.split_at_mut(width);
+        for (column, block) in first.chunks_mut(side as usize).enumerate() {
+            let corner = UVec2::new(column as u32, row as u32) * side;
+            block.fill(color(film, representative(corner, side, size)));
+        }
+        others.chunks_mut(width).for_each(|line| line.copy_from_slice(first));
+    });
+}
+
+/// What the samples of `pixel` show; black without any.
+fn color(film: &Film, pixel: UVec2) -> [f32; 4] {
+    PixelEstimate::of(film, pixel).map_or([0.0; 4], |estimate| rgba(&estimate, estimate.mean()))
+}
+
+fn rgba(estimate: &PixelEstimate<'_>, mean: [f64; 3]) -> [f32; 4] {
+    let [r, g, b] = mean.map(|value| value as f32);
+    [r, g, b, estimate.alpha() as f32]
 }
 
 /// Reads the variance of the gray mean of every pixel and the variance of that into `variance`, which gets the size of the
@@ -128,8 +158,7 @@ fn resolve_line(film: &Film, y: u32, line: &mut [[f32; 4]]) -> LineStats {
                 if shown == pixel {
                     stats.add(&estimate, mean);
                 }
-                let [r, g, b] = mean.map(|value| value as f32);
-                last.1 = [r, g, b, estimate.alpha() as f32];
+                last.1 = rgba(&estimate, mean);
             }
         }
         *out = last.1;
@@ -189,6 +218,24 @@ mod tests {
         assert_eq!(red_at(17, 0), 20.0);
         assert_eq!(pixels[0], [4.0, 0.0, 0.0, 0.25]);
         assert_eq!(pixels[16 * 21], [0.0; 4]);
+    }
+
+    #[test]
+    fn blocks_are_read_as_their_pixels_would_be() {
+        let size = UVec2::new(75, 50);
+        for side in [4, 32] {
+            let mut film = Film::new(size).unwrap();
+            for index in 0..size.x * size.y {
+                let pixel = UVec2::new(index % size.x, index / size.x);
+                if representative(pixel, side, size) == pixel {
+                    film.add(pixel, &red(index as f32));
+                }
+            }
+            let (mut blocks, mut single) = (Vec::new(), Vec::new());
+            resolve_blocks(&film, side, &mut blocks);
+            assert_eq!(resolve(&film, &mut single), None);
+            assert_eq!(blocks, single);
+        }
     }
 
     #[test]

