@@ -4,6 +4,7 @@
 mod canvas;
 mod pipelines;
 
+use std::borrow::Cow;
 use std::num::NonZeroU64;
 use std::sync::Arc;
 
@@ -14,6 +15,7 @@ use super::diagnostics::{STOPS, Scale, stops};
 use super::theme::color;
 use super::zoom::Placement;
 use crate::image::tone::{Channel, Tone, false_color};
+use crate::math::Rgb;
 use crate::render::Picture;
 use canvas::{Canvas, Place};
 use pipelines::{Pipelines, Variant};
@@ -24,8 +26,7 @@ use pipelines::{Pipelines, Variant};
 struct View {
     origin: [f32; 2],
     step: f32,
-    /// As the shader aligns what follows.
-    padding: u32,
+    block_log2: u32,
     size: [u32; 2],
     canvas: [i32; 2],
     surround: [f32; 4],
@@ -75,13 +76,56 @@ impl Source {
         }
     }
 
-    fn data(self, picture: &Picture) -> &[u8] {
+    fn light(self, picture: &Picture) -> &[[f32; 4]] {
         match self {
-            Self::Pixels => bytemuck::cast_slice(&picture.pixels),
-            Self::Light => bytemuck::cast_slice(&picture.layer.light),
-            Self::Numbers => bytemuck::cast_slice(&picture.layer.numbers),
+            Self::Pixels => &picture.pixels,
+            Self::Light => &picture.layer.light,
+            Self::Numbers => &[],
         }
     }
+}
+
+/// What of a picture is on the graphics card, and how.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Upload {
+    source: Source,
+    /// As what its light is shown, if that is settled here: of a coarse picture this is worked out
+    /// for its few texels, not for every pixel of the window.
+    coded: Option<Tone>,
+}
+
+impl Upload {
+    /// One texel a block of `picture`, row by row.
+    fn texels(self, picture: &Picture) -> Cow<'_, [u8]> {
+        let Some(tone) = self.coded else {
+            return match self.source {
+                Source::Numbers => blocks(picture, &picture.layer.numbers),
+                light => blocks(picture, light.light(picture)),
+            };
+        };
+        let encoder = tone.encoder();
+        let codes = corners(picture, self.source.light(picture)).flat_map(|[r, g, b, _]| {
+            let [r, g, b] =
+                encoder.encode(Rgb::new(*r, *g, *b)).map(|code| f32::from(code) / 255.0);
+            [r, g, b, 1.0]
+        });
+        Cow::Owned(codes.flat_map(f32::to_ne_bytes).collect())
+    }
+}
+
+/// Of the `values` of all pixels, one a block.
+fn blocks<'a, T: bytemuck::NoUninit>(picture: &Picture, values: &'a [T]) -> Cow<'a, [u8]> {
+    if picture.block_log2 == 0 {
+        return Cow::Borrowed(bytemuck::cast_slice(values));
+    }
+    Cow::Owned(corners(picture, values).flat_map(bytemuck::bytes_of).copied().collect())
+}
+
+/// The first of the `values` of each block, row by row.
+fn corners<'a, T>(picture: &Picture, values: &'a [T]) -> impl Iterator<Item = &'a T> {
+    let side = 1 << picture.block_log2;
+    let lines = values.chunks(picture.size.x.max(1) as usize).step_by(side);
+    lines.flat_map(move |line| line.iter().step_by(side))
 }
 
 /// What the draw call needs on the graphics card; lives among egui's callback resources.
@@ -97,13 +141,22 @@ struct Pane {
     shown: Option<Shown>,
     canvas: Option<Canvas>,
     /// What is drawn on the canvas, if anything.
-    drawn: Option<(View, Variant)>,
+    drawn: Option<Drawn>,
+}
+
+/// What is drawn on a canvas.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Drawn {
+    view: View,
+    variant: Variant,
+    /// The part of the canvas that is seen; nothing is drawn beside it.
+    seen: Place,
 }
 
 /// The uploaded picture.
 struct Shown {
     picture: Arc<Picture>,
-    source: Source,
+    upload: Upload,
     texture: wgpu::Texture,
     bindings: wgpu::BindGroup,
 }
@@ -129,13 +182,15 @@ pub struct Shot {
     pub placement: Placement,
     /// The part of the window that it is laid out in, in points.
     pub area: egui::Rect,
+    /// The part of that which is seen.
+    pub clip: egui::Rect,
     /// Which of the pictures shown at once it is, below [`PANES`].
     pub pane: usize,
 }
 
-/// Shows a picture where it lies in `rect`.
-pub fn paint(painter: &egui::Painter, rect: egui::Rect, shot: Shot) {
-    painter.add(egui_wgpu::Callback::new_paint_callback(rect, shot));
+/// Shows a picture where it is seen.
+pub fn paint(painter: &egui::Painter, shot: Shot) {
+    painter.add(egui_wgpu::Callback::new_paint_callback(shot.clip, shot));
 }
 
 impl CallbackTrait for Shot {
@@ -151,15 +206,18 @@ impl CallbackTrait for Shot {
         let Display { layout, panes, pipelines } = display;
         let Some(pane) = panes.get_mut(self.pane) else { return Vec::new() };
         let place = Place::of(&self.area, screen);
-        let view = self.view(&place, screen.pixels_per_point);
-        let variant = Variant::new(self.look, view.step);
-        let is_new = pane.upload(device, queue, layout, &self.picture, self.look.source());
-        if is_new || !pane.shows(&view, variant, place.size) {
+        let coded = self.coded(pipelines.canvas_format());
+        let view = self.view(&place, screen.pixels_per_point, coded.is_some());
+        let variant = Variant::new(self.look, view.step, coded.is_some());
+        let upload = Upload { source: self.look.source(), coded };
+        let is_new = pane.upload(device, queue, layout, &self.picture, upload);
+        let drawn = Drawn { view, variant, seen: Place::of(&self.clip, screen).within(&place) };
+        if is_new || !pane.shows(&drawn, place.size) {
             queue.write_buffer(&pane.view, 0, bytemuck::bytes_of(&view));
             let format = pipelines.canvas_format();
             let pipeline = pipelines.of(device, variant);
-            pane.draw(device, encoder, (layout, pipeline), (place.size, format));
-            pane.drawn = Some((view, variant));
+            pane.draw(device, encoder, (layout, pipeline), (place.size, format), &drawn.seen);
+            pane.drawn = Some(drawn);
         }
         Vec::new()
     }
@@ -180,10 +238,21 @@ impl CallbackTrait for Shot {
 }
 
 impl Shot {
-    fn view(&self, place: &Place, pixels_per_point: f32) -> View {
+    /// How the picture is coded before it is drawn, if it is. Codes are not for canvases that code
+    /// by themselves, nor to draw lines on.
+    fn coded(&self, canvas: wgpu::TextureFormat) -> Option<Tone> {
+        let (Look::Picture(tone) | Look::Light(tone)) = self.look else { return None };
+        let is_plain = !canvas.is_srgb() && !pipelines::has_grid(1.0 / self.placement.scale);
+        (self.picture.block_log2 > 0 && is_plain).then_some(tone)
+    }
+
+    fn view(&self, place: &Place, pixels_per_point: f32, is_coded: bool) -> View {
         let area = Vec2::new(self.area.min.x, self.area.min.y) * pixels_per_point;
         let corner = area + self.placement.corner;
-        let surround = egui::Rgba::from(color::SURROUND);
+        let surround = match is_coded {
+            true => color::SURROUND.to_normalized_gamma_f32(),
+            false => egui::Rgba::from(color::SURROUND).to_array(),
+        };
         let (tone, scale) = match self.look {
             Look::Picture(tone) | Look::Light(tone) => (tone, [0.0; 4]),
             Look::Numbers(scale) => (Tone::default(), scale_and_span(scale)),
@@ -197,10 +266,10 @@ impl Shot {
         View {
             origin: (-corner / self.placement.scale).into(),
             step: 1.0 / self.placement.scale,
-            padding: 0,
+            block_log2: self.picture.block_log2,
             size: self.picture.size.into(),
             canvas: place.corner,
-            surround: surround.to_array(),
+            surround,
             scale,
             exposed_from_linear: padded_columns,
             ramp: ramp.map(|[r, g, b]| [r, g, b, 1.0]),
@@ -242,9 +311,8 @@ impl Pane {
     }
 
     /// Whether the canvas shows just that already.
-    fn shows(&self, view: &View, variant: Variant, size: UVec2) -> bool {
-        let is_drawn = |(drawn, by): &(View, Variant)| drawn == view && *by == variant;
-        self.drawn.as_ref().is_some_and(is_drawn)
+    fn shows(&self, wanted: &Drawn, size: UVec2) -> bool {
+        self.drawn.as_ref() == Some(wanted)
             && self.canvas.as_ref().is_some_and(|canvas| canvas.is_of(size))
     }
 
@@ -255,11 +323,12 @@ impl Pane {
         encoder: &mut wgpu::CommandEncoder,
         (layout, pipeline): (&wgpu::BindGroupLayout, &wgpu::RenderPipeline),
         (size, format): (UVec2, wgpu::TextureFormat),
+        seen: &Place,
     ) {
         let Some(shown) = &self.shown else { return };
         let old = self.canvas.take().filter(|canvas| canvas.is_of(size));
         let canvas = old.unwrap_or_else(|| Canvas::new(device, layout, (size, format), &self.view));
-        canvas.draw(encoder, pipeline, &shown.bindings);
+        canvas.draw(encoder, pipeline, &shown.bindings, seen);
         self.canvas = Some(canvas);
     }
 
@@ -270,24 +339,27 @@ impl Pane {
         queue: &wgpu::Queue,
         layout: &wgpu::BindGroupLayout,
         picture: &Arc<Picture>,
-        source: Source,
+        upload: Upload,
     ) -> bool {
-        let format = source.format();
+        let format = upload.source.format();
         let is_there =
-            |shown: &Shown| Arc::ptr_eq(&shown.picture, picture) && shown.source == source;
+            |shown: &Shown| Arc::ptr_eq(&shown.picture, picture) && shown.upload == upload;
         if self.shown.as_ref().is_some_and(is_there) {
             return false;
         }
-        let fits =
-            |shown: &Shown| shown.picture.size == picture.size && shown.source.format() == format;
+        let fits = |shown: &Shown| {
+            shown.picture.size == picture.size && shown.upload.source.format() == format
+        };
         let (texture, bindings) = match self.shown.take().filter(fits) {
             Some(shown) => (shown.texture, shown.bindings),
             None => self.allocate(device, layout, picture.size, format),
         };
-        let UVec2 { x: width, y: height } = picture.size;
+        // A coarse picture takes a corner of the texture, and no time.
+        let size = picture.size.map(|side| side.div_ceil(1 << picture.block_log2));
+        let UVec2 { x: width, y: height } = size;
         queue.write_texture(
             texture.as_image_copy(),
-            source.data(picture),
+            &upload.texels(picture),
             wgpu::TexelCopyBufferLayout {
                 offset: 0,
                 bytes_per_row: format.block_copy_size(None).map(|bytes| bytes * width),
@@ -295,7 +367,7 @@ impl Pane {
             },
             wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
         );
-        self.shown = Some(Shown { picture: picture.clone(), source, texture, bindings });
+        self.shown = Some(Shown { picture: picture.clone(), upload, texture, bindings });
         true
     }
 

@@ -4,7 +4,7 @@
 
 // What is settled for a whole picture when its pipeline is made.
 
-// 0: linear, 1: filmic, 2: the ramp, 3: AgX.
+// 0: linear, 1: filmic, 2: the ramp, 3: AgX, 4: none, the picture is of codes, which go through.
 override CURVE: u32;
 // 0: color, 1 to 3: red, green, blue, 4: luminance, 5: false color.
 override CHANNEL: u32;
@@ -20,11 +20,13 @@ struct View {
     origin: vec2f,
     // Picture pixels per framebuffer pixel.
     step: f32,
+    // Blocks of 2 to this power pixels squared are a texel each.
+    block_log2: u32,
     // Size of the picture in pixels; zero where there is none yet.
     size: vec2u,
     // The framebuffer's pixel where the canvas begins.
     canvas: vec2i,
-    // What lies around the picture, linear.
+    // What lies around the picture, linear, or its codes around codes.
     surround: vec4f,
     // Logarithm of the number at the ramp's start, and one over that of the ratio of its ends.
     scale: vec4f,
@@ -44,12 +46,18 @@ fn vertex(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
     return vec4f(corner * 2.0 - 1.0, 0.0, 1.0);
 }
 
+// The pixel at `at`, or that of the picture next to it.
+fn pixel(at: vec2f, last: vec2i) -> vec3f {
+    let texel = clamp(vec2i(floor(at)), vec2i(0), last) >> vec2u(view.block_log2);
+    return textureLoad(picture, texel, 0).rgb;
+}
+
 // The mean of the picture over the framebuffer pixel at `center` (picture pixels): the nearest
 // texel when zoomed in, up to 6 x 6 of them when zoomed out.
 fn footprint(center: vec2f) -> vec3f {
     let last = vec2i(view.size) - 1;
     if !IS_SHRUNK {
-        return textureLoad(picture, clamp(vec2i(floor(center)), vec2i(0), last), 0).rgb;
+        return pixel(center, last);
     }
     let taps = clamp(i32(ceil(view.step - 0.001)), 2, 6);
     let low = center - 0.5 * view.step;
@@ -57,7 +65,7 @@ fn footprint(center: vec2f) -> vec3f {
     for (var y = 0; y < taps; y++) {
         for (var x = 0; x < taps; x++) {
             let at = low + (vec2f(f32(x), f32(y)) + 0.5) * view.step / f32(taps);
-            sum += textureLoad(picture, clamp(vec2i(floor(at)), vec2i(0), last), 0).rgb;
+            sum += pixel(at, last);
         }
     }
     return sum / f32(taps * taps);
@@ -158,6 +166,8 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
     if all(at >= vec2f(0.0)) && all(at < vec2f(view.size)) {
         if CURVE == 2u {
             color = ramp(footprint(at).r);
+        } else if CURVE == 4u {
+            color = footprint(at);
         } else {
             color = shown(footprint(at));
         }
@@ -167,7 +177,7 @@ fn fragment(@builtin(position) position: vec4f) -> @location(0) vec4f {
         }
     }
     color = clamp(color, vec3f(0.0), vec3f(1.0));
-    if ENCODES {
+    if ENCODES && CURVE != 4u {
         color = srgb(color);
     }
     return vec4f(color, 1.0);

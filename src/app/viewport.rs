@@ -244,10 +244,11 @@ impl Viewport {
             look: pane.look,
             placement: self.zoom.place(pane.picture.size, self.size),
             area: pane.area,
+            clip: pane.clip,
             pane: index,
         };
         let placement = shot.placement;
-        display::paint(ui.painter(), pane.clip, shot);
+        display::paint(ui.painter(), shot);
         let rects = [pane.area, pane.clip];
         let shown = (pane.picture.as_ref(), pane.look);
         readout::paint(ui.painter(), rects, shown, placement, ui.pixels_per_point());

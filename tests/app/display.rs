@@ -78,8 +78,14 @@ fn white_balance_is_set_undone_and_that_of_saved_pictures() {
     window.settle();
     assert_eq!(window.document().tone.white, 2500.0);
     assert_shown(&mut window, &pixels, Tone { white: 2500.0, ..Tone::default() });
-    window.press(Modifiers::COMMAND, Key::Z);
-    assert_eq!(window.document().tone, Tone::default());
+    let slider = window.harness.get_by_role_and_label(Role::Slider, "Tint");
+    slider.set_value_accesskit(40.0);
+    window.settle();
+    assert_shown(&mut window, &pixels, Tone { white: 2500.0, tint: 40.0, ..Tone::default() });
+    for tone in [Tone { white: 2500.0, ..Tone::default() }, Tone::default()] {
+        window.press(Modifiers::COMMAND, Key::Z);
+        assert_eq!(window.document().tone, tone);
+    }
 }
 
 #[test]
@@ -120,4 +126,23 @@ fn layers_take_the_place_of_the_picture() {
     window.click(Role::Button, "Picture");
     let pixels = window.app().engine().picture().unwrap().pixels.clone();
     assert_shown(&mut window, &pixels, Tone::default());
+}
+
+/// Only a texel a block is brought onto the graphics card.
+#[test]
+fn a_coarse_picture_shows_its_blocks() {
+    let Some(mut window) = open() else { return };
+    window.press(Modifiers::NONE, Key::Space);
+    window.press(Modifiers::NONE, Key::Num1);
+    window.until("the coarse picture is there", |app| {
+        app.engine().picture().is_some_and(|picture| !picture.complete)
+    });
+    let picture = window.app().engine().picture().unwrap().clone();
+    let side = 1 << picture.block_log2;
+    assert!(side > 1, "the picture is not of blocks");
+    for (index, pixel) in picture.pixels.iter().enumerate() {
+        let (x, y) = (index % 64, index / 64);
+        assert_eq!(*pixel, picture.pixels[y / side * side * 64 + x / side * side], "{x},{y}");
+    }
+    assert_shown(&mut window, &picture.pixels, Tone::default());
 }

@@ -4,7 +4,7 @@
 
 use egui::Rect;
 use egui::epaint::ViewportInPixels;
-use glam::UVec2;
+use glam::{IVec2, UVec2};
 
 /// The pixels of the framebuffer that a part of the window covers.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,6 +22,14 @@ impl Place {
             ViewportInPixels::from_points(rect, screen.pixels_per_point, screen.size_in_pixels);
         let size = [place.width_px, place.height_px].map(|side| side.max(1) as u32);
         Self { corner: [place.left_px, place.top_px], size: size.into() }
+    }
+
+    /// What of it lies in `other`, from the corner of that.
+    pub fn within(&self, other: &Self) -> Self {
+        let corner = IVec2::from(self.corner) - IVec2::from(other.corner);
+        let first = corner.max(IVec2::ZERO).as_uvec2().min(other.size);
+        let last = (corner + self.size.as_ivec2()).max(IVec2::ZERO).as_uvec2().min(other.size);
+        Self { corner: first.as_ivec2().into(), size: last.saturating_sub(first) }
     }
 }
 
@@ -57,12 +65,13 @@ impl Canvas {
         &self.bindings
     }
 
-    /// Draws on it, with a pipeline and what that reads.
+    /// Draws the part of it that is `seen`, with a pipeline and what that reads.
     pub fn draw(
         &self,
         encoder: &mut wgpu::CommandEncoder,
         pipeline: &wgpu::RenderPipeline,
         bindings: &wgpu::BindGroup,
+        seen: &Place,
     ) {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("canvas"),
@@ -82,6 +91,29 @@ impl Canvas {
         });
         pass.set_pipeline(pipeline);
         pass.set_bind_group(0, bindings, &[]);
+        let [x, y] = seen.corner.map(|corner| corner.max(0) as u32);
+        pass.set_scissor_rect(x, y, seen.size.x, seen.size.y);
         pass.draw(0..3, 0..1);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn place(x: i32, y: i32, width: u32, height: u32) -> Place {
+        Place { corner: [x, y], size: UVec2::new(width, height) }
+    }
+
+    #[test]
+    fn what_is_seen_lies_on_the_canvas() {
+        let canvas = place(10, 20, 100, 50);
+        assert_eq!(canvas.within(&canvas), place(0, 0, 100, 50));
+        assert_eq!(place(60, 20, 50, 50).within(&canvas), place(50, 0, 50, 50));
+        assert_eq!(place(0, 0, 40, 30).within(&canvas), place(0, 0, 30, 10));
+        assert_eq!(place(90, 60, 90, 90).within(&canvas), place(80, 40, 20, 10));
+        for beside in [place(0, 0, 10, 90), place(200, 0, 10, 90)] {
+            assert_eq!(beside.within(&canvas).size.x, 0);
+        }
     }
 }

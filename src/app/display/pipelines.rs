@@ -23,20 +23,31 @@ const GRID_FROM: f32 = 0.0626;
 const ROUNDING: f32 = 0.001;
 
 impl Variant {
-    /// For `look` at a picture that has `step` pixels per one of the framebuffer.
-    pub fn new(look: Look, step: f32) -> Self {
+    /// For `look` at a picture that has `step` pixels per one of the framebuffer, and whose light
+    /// may be coded already.
+    pub fn new(look: Look, step: f32, is_coded: bool) -> Self {
+        if is_coded {
+            return Self { curve: CODED, channel: 0, is_shrunk: false, has_grid: false };
+        }
         let (curve, channel) = match look {
             Look::Picture(tone) | Look::Light(tone) => {
                 (curve_index(tone.curve), channel_index(tone.channel))
             }
             Look::Numbers(_) => (RAMP, 0),
         };
-        Self { curve, channel, is_shrunk: step > 1.0 + ROUNDING, has_grid: step <= GRID_FROM }
+        Self { curve, channel, is_shrunk: step > 1.0 + ROUNDING, has_grid: has_grid(step) }
     }
+}
+
+/// Whether lines are drawn between pixels, `step` of which are one of the framebuffer.
+pub(super) fn has_grid(step: f32) -> bool {
+    step <= GRID_FROM
 }
 
 /// What the shader calls the ramp.
 const RAMP: u32 = 2;
+/// What the shader calls light that is coded already.
+const CODED: u32 = 4;
 
 /// What the shader calls a curve.
 fn curve_index(curve: ToneCurve) -> u32 {
