@@ -243,7 +243,10 @@ impl Shot {
     fn coded(&self, canvas: wgpu::TextureFormat) -> Option<Tone> {
         let (Look::Picture(tone) | Look::Light(tone)) = self.look else { return None };
         let is_plain = !canvas.is_srgb() && !pipelines::has_grid(1.0 / self.placement.scale);
-        (self.picture.block_log2 > 0 && is_plain).then_some(tone)
+        // Smaller blocks are many, and blocks smaller than a pixel of the window have to be averaged.
+        let side = 1 << self.picture.block_log2;
+        let are_large = side > 2 && 1.0 / self.placement.scale <= side as f32;
+        (are_large && is_plain).then_some(tone)
     }
 
     fn view(&self, place: &Place, pixels_per_point: f32, is_coded: bool) -> View {

@@ -20,6 +20,8 @@ pub struct Engine {
     schedule: Schedule,
     /// The pixels that get all samples.
     area: Option<Area>,
+    /// Whether all samples are of this schedule.
+    begun_empty: bool,
     seconds: f64,
     cpu_seconds: f64,
 }
@@ -48,9 +50,10 @@ impl Engine {
         limits: Limits,
         seconds_per_path: Option<f64>,
     ) -> Self {
-        let (passes, _) = film.sample_range();
+        let (passes, most) = film.sample_range();
+        let begun_empty = most == 0;
         let schedule = Schedule::new(film.size(), passes, limits, seconds_per_path);
-        Self { sampler, film, schedule, area: None, seconds: 0.0, cpu_seconds: 0.0 }
+        Self { sampler, film, schedule, area: None, begun_empty, seconds: 0.0, cpu_seconds: 0.0 }
     }
 
     /// Gives all samples to the pixels of `area` once every pixel has one, or to all pixels.
@@ -70,6 +73,7 @@ impl Engine {
     /// Throws the samples away and begins again with another sampler.
     pub fn start_over(&mut self, sampler: Arc<dyn PixelSampler>) {
         self.film.clear();
+        self.begun_empty = true;
         let (limits, cost) = (self.schedule.limits(), self.schedule.seconds_per_path());
         self.schedule = Schedule::new(self.film.size(), 0, limits, cost);
         self.schedule.focus(self.area, 0);
@@ -117,7 +121,8 @@ impl Engine {
     /// Reads the film into `picture`, with the extras that are wanted; its generation stays.
     pub fn read(&mut self, pool: &Pool, extras: Extras, picture: &mut Picture) {
         let start = Instant::now();
-        let (film, blocks, is_complete) = (&self.film, self.schedule.blocks(), self.is_complete());
+        let (film, is_complete) = (&self.film, self.is_complete());
+        let blocks = if self.begun_empty { self.schedule.blocks() } else { 1 };
         let noise = pool.install(|| {
             picture.layer.read(film, extras.layer);
             match (extras.variance, is_complete) {

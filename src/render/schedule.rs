@@ -90,6 +90,8 @@ pub struct Schedule {
     next_tile: usize,
     passes: u32,
     has_picture: bool,
+    /// Whether samples were taken of a piece of work that is not done.
+    is_amid_work: bool,
     pass_ended: bool,
     seconds_per_path: Option<f64>,
     published: Option<f64>,
@@ -111,6 +113,7 @@ impl Schedule {
             next_tile: 0,
             passes,
             has_picture: passes > 0,
+            is_amid_work: false,
             pass_ended: false,
             seconds_per_path,
             published: None,
@@ -157,6 +160,7 @@ impl Schedule {
         if paths == 0 {
             return;
         }
+        self.is_amid_work = true;
         let cost = seconds / paths as f64;
         self.seconds_per_path =
             Some(self.seconds_per_path.map_or(cost, |old| old + COST_WEIGHT * (cost - old)));
@@ -165,6 +169,7 @@ impl Schedule {
     /// Takes note that the whole of `work` is done.
     pub fn completed(&mut self, work: &Work) {
         self.next_tile = work.tiles.end;
+        self.is_amid_work = false;
         if self.next_tile < self.band().end {
             return;
         }
@@ -208,9 +213,10 @@ impl Schedule {
     }
 
     /// The side of the blocks that stand for the pixels: as coarse as the last whole part of the
-    /// first pass while nothing finer is planned, then 1.
+    /// first pass while nothing finer is sampled, then 1.
     pub fn blocks(&self) -> u32 {
-        let is_coarse = self.has_picture && self.passes == 0 && self.next_tile == 0;
+        let is_coarse =
+            self.has_picture && self.passes == 0 && self.next_tile == 0 && !self.is_amid_work;
         if is_coarse { self.stride * 2 } else { 1 }
     }
 

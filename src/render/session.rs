@@ -120,7 +120,7 @@ impl Session {
     }
 
     /// Renders `request` from now on. The latest wins: what runs is given up within one sample a
-    /// thread (or, if it has nothing to show yet, when it has, or after a quarter of a second), and
+    /// thread (or, if it has nothing to show yet, when it has, or after a second), and
     /// a request that has not begun is dropped.
     pub fn start(&self, request: Request) {
         self.shared.post(|mail| mail.request = Some(request));

@@ -126,7 +126,9 @@ fn progress(ui: &mut Ui, stats: &RenderStats, engine: &Engine) {
 /// How long a render with an end will take to get there.
 fn time_left(ui: &mut Ui, stats: &RenderStats, engine: &Engine) {
     let wanted = engine.built().map_or(0, |built| built.settings.film.spp);
-    let Some(left) = seconds_left(stats, wanted) else { return };
+    // A rectangle that gets all samples has another pace than the picture.
+    let is_whole = engine.picture().is_some_and(|picture| picture.focus.is_none());
+    let Some(left) = seconds_left(stats, wanted).filter(|_| is_whole) else { return };
     let left = if left < 60.0 { format!("{:.0} s", left.ceil()) } else { seconds(left) };
     let text = RichText::new(format!("{left} left")).color(color::TEXT_DIM);
     ui.label(text).on_hover_text(format!("Until each pixel has {wanted} samples."));

@@ -14,6 +14,9 @@ pub const TINTS: [f32; 2] = [-150.0, 150.0];
 /// One unit of tint, as a distance in the CIE 1960 (u, v) diagram; the unit of raw converters.
 const TINT_UNIT: f32 = 1.0 / 3000.0;
 
+/// The most that a cone response is raised.
+const MOST_GAIN: f32 = 32.0;
+
 /// Linear Rec.709 from CIE XYZ, column by column (IEC 61966-2-1).
 const RGB_FROM_XYZ: Mat3A = Mat3A::from_cols(
     Vec3A::new(3.240_454, -0.969_266, 0.055_643_4),
@@ -36,6 +39,8 @@ pub fn balance(kelvin: f32, tint: f32) -> Mat3A {
     }
     let tinted = xyz_of_uv(tinted(kelvin, tint));
     let [from, to] = [tinted, xyz_of(NEUTRAL)].map(|xyz| CONES_FROM_XYZ * xyz);
+    // The greenest of warm lights are no colors any more: what they lack is not made up for endlessly.
+    let from = from.max(to / MOST_GAIN);
     let adapt = Mat3A::from_diagonal((to / from).into());
     let cones_from_rgb = CONES_FROM_XYZ * RGB_FROM_XYZ.inverse();
     cones_from_rgb.inverse() * adapt * cones_from_rgb
@@ -115,7 +120,8 @@ mod tests {
         assert!(balance(NEUTRAL, 0.01).abs_diff_eq(Mat3A::IDENTITY, 1e-4));
         for kelvin in [0.0, 1667.0, 4000.0, 25_000.0, f32::INFINITY] {
             for tint in [f32::NEG_INFINITY, 0.0, 150.0] {
-                assert!(balance(kelvin, tint).is_finite(), "{kelvin} {tint}");
+                let white = balance(kelvin, tint) * Vec3A::ONE;
+                assert!(white.is_finite() && white.abs().max_element() < 60.0, "{kelvin} {tint}");
             }
         }
     }
