@@ -65,8 +65,8 @@ impl Channel {
 pub struct Tone {
     /// Stops of exposure: the picture is multiplied by 2 to this power.
     pub exposure: f32,
-    /// Color temperature of the light that is shown white, in kelvin; [`white::NEUTRAL`] changes
-    /// nothing.
+    /// Color temperature of the light that is shown white, in kelvin; without a tint
+    /// [`white::NEUTRAL`] changes nothing.
     pub white: f32,
     /// How much greener than a black body that light is, from -150 to 150; less than 0: more
     /// magenta.

@@ -4,7 +4,7 @@ use glam::{Mat3A, Vec2, Vec3A};
 
 use crate::math::{Rgb, luminance};
 
-/// The color temperature that changes nothing, in kelvin.
+/// The color temperature that changes nothing without a tint, in kelvin.
 pub const NEUTRAL: f32 = 6500.0;
 /// Temperatures that can be balanced, in kelvin: those of the formula for the Planckian locus.
 pub const RANGE: [f32; 2] = [1667.0, 25_000.0];
@@ -37,11 +37,7 @@ pub fn balance(kelvin: f32, tint: f32) -> Mat3A {
     if kelvin == NEUTRAL && tint == 0.0 {
         return Mat3A::IDENTITY;
     }
-    let tinted = xyz_of_uv(tinted(kelvin, tint));
-    let [from, to] = [tinted, xyz_of(NEUTRAL)].map(|xyz| CONES_FROM_XYZ * xyz);
-    // The greenest of warm lights are no colors any more: what they lack is not made up for endlessly.
-    let from = from.max(to / MOST_GAIN);
-    let adapt = Mat3A::from_diagonal((to / from).into());
+    let adapt = Mat3A::from_diagonal(gains(kelvin, tint).into());
     let cones_from_rgb = CONES_FROM_XYZ * RGB_FROM_XYZ.inverse();
     cones_from_rgb.inverse() * adapt * cones_from_rgb
 }
@@ -51,6 +47,14 @@ pub fn balance(kelvin: f32, tint: f32) -> Mat3A {
 pub fn of_temperature(kelvin: f32) -> Rgb {
     let color = balance(kelvin, 0.0).inverse() * Rgb::ONE;
     color / luminance(color)
+}
+
+/// What each cone response is raised by. The greenest of warm lights are no colors any more: what
+/// they lack is not made up for beyond [`MOST_GAIN`].
+fn gains(kelvin: f32, tint: f32) -> Vec3A {
+    let tinted = xyz_of_uv(tinted(kelvin, tint));
+    let [from, to] = [tinted, xyz_of(NEUTRAL)].map(|xyz| CONES_FROM_XYZ * xyz);
+    to / from.max(to / MOST_GAIN)
 }
 
 /// CIE 1960 (u, v) of a light `tint` units above the locus of black bodies, at `kelvin`.
@@ -120,8 +124,25 @@ mod tests {
         assert!(balance(NEUTRAL, 0.01).abs_diff_eq(Mat3A::IDENTITY, 1e-4));
         for kelvin in [0.0, 1667.0, 4000.0, 25_000.0, f32::INFINITY] {
             for tint in [f32::NEG_INFINITY, 0.0, 150.0] {
-                let white = balance(kelvin, tint) * Vec3A::ONE;
-                assert!(white.is_finite() && white.abs().max_element() < 60.0, "{kelvin} {tint}");
+                assert!(balance(kelvin, tint).is_finite(), "{kelvin} {tint}");
+            }
+        }
+    }
+
+    /// A warm light that is much greener would have less than nothing of blue; it must not turn the
+    /// picture's blue over.
+    #[test]
+    fn no_response_is_turned_over_or_raised_endlessly() {
+        for step in 0..=40 {
+            let kelvin = RANGE[0] * (RANGE[1] / RANGE[0]).powf(step as f32 / 40.0);
+            assert!(gains(kelvin, 0.0).max_element() < 0.6 * MOST_GAIN, "{kelvin}: cut untinted");
+            for tint in -30..=30 {
+                let gains = gains(kelvin, 5.0 * tint as f32);
+                let bounds = (gains.min_element(), gains.max_element());
+                assert!(
+                    bounds.0 > 0.1 && bounds.1 <= 1.0001 * MOST_GAIN,
+                    "{kelvin} {tint} {bounds:?}"
+                );
             }
         }
     }
