@@ -1,6 +1,6 @@
 //! One of many things by its name, from a list that stays short.
 
-use egui::{Id, ScrollArea, TextEdit, Ui};
+use egui::{Button, Id, ScrollArea, TextEdit, Ui};
 
 /// Height of the list, in points.
 const HEIGHT: f32 = 132.0;
@@ -16,7 +16,8 @@ struct Memory {
 /// Lists `names`, those that hold what is typed above them, and returns the chosen one's index; 0
 /// until there is a choice. `what` says what they are the names of.
 pub fn choose(ui: &mut Ui, what: &str, names: &[String]) -> usize {
-    let id = ui.make_persistent_id((what, "chooser"));
+    // Of another scene the choice is another one.
+    let id = ui.make_persistent_id((what, names));
     let mut memory: Memory = ui.data(|data| data.get_temp(id)).unwrap_or_default();
     memory.chosen = memory.chosen.min(names.len().saturating_sub(1));
     field(ui, what, &mut memory.text);
@@ -48,7 +49,9 @@ fn list(ui: &mut Ui, id: Id, names: &[String], memory: &mut Memory) {
     area.show_rows(ui, height, found.len(), |ui, rows| {
         for &index in found.get(rows).unwrap_or_default() {
             let is_chosen = index == memory.chosen;
-            if ui.selectable_label(is_chosen, &names[index]).clicked() {
+            // Rows are of one height.
+            let label = Button::selectable(is_chosen, &names[index]).truncate();
+            if ui.add(label).clicked() {
                 memory.chosen = index;
             }
         }

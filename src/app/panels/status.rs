@@ -134,11 +134,11 @@ fn time_left(ui: &mut Ui, stats: &RenderStats, engine: &Engine) {
     ui.label(text).on_hover_text(format!("Until each pixel has {wanted} samples."));
 }
 
-/// At the pace so far; none before there is one, and where there is no end.
+/// At the pace so far; none before there is one, at the end, and where there is no end.
 fn seconds_left(stats: &RenderStats, wanted: u32) -> Option<f64> {
     let have = stats.samples_per_pixel;
-    let is_known = wanted > 0 && have >= 1.0;
-    is_known.then(|| stats.seconds * (f64::from(wanted) / have - 1.0).max(0.0))
+    let is_known = have >= 1.0 && have < f64::from(wanted);
+    is_known.then(|| stats.seconds * (f64::from(wanted) / have - 1.0))
 }
 
 /// A number set to the right in a field of fixed width, so that nothing jumps, with its unit.
@@ -271,7 +271,7 @@ mod tests {
     fn the_time_left_is_that_of_the_samples_left() {
         let stats = RenderStats { samples_per_pixel: 16.0, seconds: 8.0, ..Default::default() };
         assert_eq!(seconds_left(&stats, 64), Some(24.0));
-        assert_eq!(seconds_left(&stats, 16), Some(0.0));
+        assert_eq!(seconds_left(&stats, 16), None, "it is there");
         assert_eq!(seconds_left(&stats, 0), None, "there is no end");
         let stats = RenderStats { samples_per_pixel: 0.2, ..stats };
         assert_eq!(seconds_left(&stats, 64), None, "the pace is not known yet");
