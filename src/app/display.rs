@@ -1,5 +1,6 @@
 //! The picture on the graphics card: upload when there is a new one, the draw call that exposes,
-//! curves and codes it, or colors its numbers (`display.wgsl`), and the copy to the window.
+//! curves and codes it, or colors its numbers (`display.wgsl`), and the copy to the window. Coarse
+//! pictures are coded before their upload.
 
 mod canvas;
 mod pipelines;

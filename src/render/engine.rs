@@ -196,3 +196,45 @@ impl Engine {
         (self.film, self.schedule.seconds_per_path())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::UVec2;
+
+    use super::*;
+    use crate::math::Rgb;
+    use crate::render::pool::Priority;
+    use crate::render::synthetic::Uniform;
+    use crate::transport::PathSample;
+
+    /// The first picture of a film, with the side of its blocks.
+    fn first_picture(film: Film) -> (Picture, u32) {
+        let pool = Pool::new(Some(1), Priority::Normal).unwrap();
+        let limits = Limits { spp: 2, seconds: None };
+        let mut engine = Engine::new(Arc::new(Uniform::default()), film, limits, None);
+        while !engine.has_picture() {
+            engine.step(&pool, false, &|| false);
+        }
+        let mut picture = Picture::default();
+        engine.read(&pool, Extras { variance: true, ..Extras::default() }, &mut picture);
+        assert!(!picture.complete && picture.variance.is_empty());
+        let side = 1 << picture.block_log2;
+        (picture, side)
+    }
+
+    #[test]
+    fn the_first_picture_is_of_blocks_but_hides_no_sample_of_before() {
+        let size = UVec2::new(64, 48);
+        let (picture, side) = first_picture(Film::new(size).unwrap());
+        assert!(side > 1);
+        assert_eq!(picture.pixels[0], picture.pixels[1]);
+
+        let mut film = Film::new(size).unwrap();
+        let bright = PathSample { emission: Rgb::splat(1000.0), ..PathSample::default() };
+        film.add(UVec2::new(1, 0), &bright);
+        let (picture, side) = first_picture(film);
+        assert_eq!(side, 1);
+        assert_eq!(picture.pixels[1][0], 1000.0);
+        assert!(picture.pixels[0][0] < 500.0);
+    }
+}

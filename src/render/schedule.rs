@@ -386,6 +386,18 @@ mod tests {
         }
         sides.dedup();
         assert_eq!(sides, [1, 8, 1, 4, 1, 2, 1]);
+
+        // Nor is it one once something finer is sampled, if only in part.
+        let mut schedule = Schedule::new(SIZE, 0, spp(2), None);
+        while schedule.blocks() == 1 {
+            let Next::Work(work) = schedule.next(0.0, false) else { panic!("no work") };
+            schedule.measured(9, 1e-3);
+            schedule.completed(&work);
+        }
+        schedule.measured(0, 1e-3);
+        assert_eq!(schedule.blocks(), 8);
+        schedule.measured(1, 1e-3);
+        assert_eq!(schedule.blocks(), 1);
         assert_eq!(Schedule::new(SIZE, 1, spp(2), None).blocks(), 1);
     }
 
@@ -411,6 +423,7 @@ mod tests {
                     assert_eq!(middle / stride, pixel / stride);
                     assert!(middle.x < SIZE.x && middle.y < SIZE.y);
                     assert_eq!(representative(middle, stride, SIZE), middle);
+                    assert!(stride > TILE || tile_of(middle) == tile_of(pixel));
                 }
             }
         }

@@ -214,6 +214,40 @@ mod tests {
         assert!(narrower > 150, "{narrower} of 300 ranges narrower than the whole");
     }
 
+    /// Against the lattice hashed corner by corner: pictures must not change from version to version.
+    #[test]
+    fn noise_interpolates_a_lattice_of_hashes() {
+        let noise = Noise { frequency: 1.7, octaves: 3, contrast: 1.0, seed: 7 };
+        let value = |octave: u32, p: IVec3| {
+            let mut hash = noise.seed ^ octave.wrapping_mul(0x9e37_79b9);
+            for coordinate in p.to_array() {
+                hash = (hash ^ coordinate as u32).wrapping_mul(0x85eb_ca6b);
+                hash = (hash ^ (hash >> 15)).wrapping_mul(0xc2b2_ae35);
+                hash ^= hash >> 13;
+            }
+            f64::from(hash >> 8) / f64::from(1 << 24)
+        };
+        let mut rng = PathRng::new(1, UVec2::ZERO, 0);
+        for _ in 0..100 {
+            let p = point(&mut rng, 20.0);
+            let mut sum = 0.0;
+            for octave in 0..3 {
+                let at = 1.7 * (1 << octave) as f32 * p;
+                let f = (at - at.floor()).as_dvec3();
+                let s = f * f * (3.0 - 2.0 * f);
+                for corner in 0..8 {
+                    let offset = glam::IVec3::new(corner & 1, (corner >> 1) & 1, corner >> 2);
+                    let near = offset.as_dvec3();
+                    let weight = near * s + (1.0 - near) * (1.0 - s);
+                    let value = value(octave, at.floor().as_ivec3() + offset);
+                    sum += weight.element_product() * value * 0.5_f64.powi(octave as i32);
+                }
+            }
+            let error = f64::from(noise.at(p)) - sum / 1.75;
+            assert!(error.abs() < 1e-6, "{p}: off by {error}");
+        }
+    }
+
     #[test]
     fn ramps_start_at_the_low_face() {
         let ramp = Ramp { axis: 2, low: -1.5, kind: RampKind::Linear { a: 0.2, b: 0.3 } };
