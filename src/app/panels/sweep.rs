@@ -157,23 +157,31 @@ fn figures(ui: &mut Ui, entry: &Entry) {
 fn worths(ui: &mut Ui, ranking: &Ranking) {
     Grid::new("toggles").num_columns(3).spacing([space::ROW * 4.0, 3.0]).show(ui, |ui| {
         heading(ui, "toggle", "");
-        heading(ui, "alone", "Time for the same noise as a share of baseline's: below 1 it helps.");
-        heading(ui, "left out", "Time for the same noise over full's: above 1 it is missed.");
+        heading(
+            ui,
+            "alone, of baseline's time",
+            "Time for the same noise as a share of baseline's: below 1 it helps.",
+        );
+        heading(
+            ui,
+            "left out, of full's time",
+            "Time for the same noise over full's: above 1 it is missed.",
+        );
         ui.end_row();
         for Worth { toggle, alone, left_out } in &ranking.worths {
             ui.label(toggle.name());
-            gain(ui, alone, "of baseline's time");
-            gain(ui, left_out, "of full's time");
+            gain(ui, alone);
+            gain(ui, left_out);
             ui.end_row();
         }
     });
 }
 
-fn gain(ui: &mut Ui, gain: &Gain, of: &str) {
+fn gain(ui: &mut Ui, gain: &Gain) {
     ui.scope(|ui| {
         ui.set_min_width(TIME);
         match gain {
-            Gain::Of(speed_up) => ui.label(format!("{} {of}", relative_time(speed_up))),
+            Gain::Of(speed_up) => ui.label(relative_time(speed_up)),
             Gain::Nothing(why) => {
                 let text = RichText::new("no effect").color(color::TEXT_DIM);
                 ui.label(text).on_hover_text(*why)
