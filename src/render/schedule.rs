@@ -14,8 +14,9 @@ use glam::UVec2;
 use super::area::Area;
 use super::film::{MAX_SAMPLES, TILE, TILE_PIXELS};
 
-/// How long the coarse picture should take, in seconds.
-const COARSE_SECONDS: f64 = 0.04;
+/// How long the coarse picture should take, in seconds. In a drag an edit waits for two of them, or
+/// four where two renders take turns, and for a frame, which should not be more than 0.1 s.
+const COARSE_SECONDS: f64 = 0.025;
 /// The coarsest stride: 510 paths for 960 × 540 pixels.
 pub const COARSEST_STRIDE: u32 = 32;
 /// Strides that the first pass may begin with, coarse to fine.
@@ -407,7 +408,7 @@ mod tests {
         let stride = |cost| Schedule::new(size, 0, spp(0), cost).stride;
         assert_eq!(stride(None), 8);
         assert_eq!(stride(Some(1e-7)), 4);
-        assert_eq!(stride(Some(4e-6)), 8);
+        assert_eq!(stride(Some(3e-6)), 8);
         assert_eq!(stride(Some(1e-5)), 16);
         assert_eq!(stride(Some(3e-5)), 32);
         assert_eq!(stride(Some(1.0)), 32);
