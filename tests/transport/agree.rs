@@ -1,9 +1,11 @@
-//! One scene, every combination of the toggles, one picture; and its error falls as 1/N.
+//! One scene, half of the combinations of the toggles, one picture; and its error falls as 1/N. The
+//! other half is that of `settings`.
 
 use std::sync::Arc;
 
 use crate::common::{
-    self, Verdicts, all_strategies, build, measure_closely, measure_enough, name, with_strategy,
+    self, Verdicts, build, measure_closely, measure_enough, name, other_half_of_strategies,
+    with_strategy,
 };
 use flambeau::transport::{
     Frame, PixelSampler,
@@ -71,14 +73,14 @@ const EVERYTHING: &str = r#"
 "#;
 
 #[test]
-fn every_combination_gives_one_picture() {
+fn combinations_give_one_picture() {
     let scene = build(EVERYTHING);
     let reference = measure_closely(&with_strategy(&scene, Preset::Full.strategy()), 4_000_000);
     let mut verdicts = Verdicts::default();
     let literal = Advanced { boost_mode: BoostMode::Literal, ..Advanced::default() };
     let strong = Advanced { boost_amount: 5.0, ..Advanced::default() };
     let finer = [literal, strong].map(|advanced| Strategy { advanced, ..Strategy::default() });
-    for strategy in all_strategies().into_iter().chain(finer) {
+    for strategy in other_half_of_strategies().into_iter().chain(finer) {
         let estimate = measure_enough(&with_strategy(&scene, strategy), 1_000_000);
         for channel in 0..3 {
             verdicts.check_equal(&name(&strategy), &estimate, &reference, channel);
@@ -96,7 +98,7 @@ fn every_combination_gives_one_picture() {
 /// what known values are for.
 ///
 /// Over seven seeds, with a reference of 4096 and 1024 pixels, the ratio to the expectation was 0.97
-/// to 1.05, with a deviation of 0.03, which makes 0.04 for these 576; the limits are seven of them
+/// to 1.05, with a deviation of 0.03, which makes 0.06 for these 256; the limits are five of them
 /// away.
 #[test]
 fn the_error_falls_as_one_over_n() {
@@ -104,7 +106,7 @@ fn the_error_falls_as_one_over_n() {
     const REFERENCE: u32 = 2048;
     let advanced = Advanced { low_discrepancy: false, ..Advanced::default() };
     let scene = with_strategy(&build(EVERYTHING), Strategy { advanced, ..Strategy::default() });
-    let size = UVec2::splat(24);
+    let size = UVec2::splat(16);
     let frame = Frame::new(Arc::new(scene), size, common::seed());
     let errors: Vec<[f64; 4]> = (0..size.element_product())
         .into_par_iter()
