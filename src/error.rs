@@ -12,7 +12,7 @@ pub type Result<T, E = Error> = std::result::Result<T, E>;
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// The operating system refused to read or write.
-    #[error("{}: {source}", path.display())]
+    #[error("{}: {}", path.display(), refusal(source))]
     Io {
         /// The file in question.
         path: PathBuf,
@@ -68,6 +68,25 @@ impl Error {
     ) -> Self {
         Self::Unsupported { file: file.into(), field: field.into(), reason: reason.into() }
     }
+}
+
+/// What the system said, with what to do where that is known.
+fn refusal(source: &std::io::Error) -> String {
+    use std::io::ErrorKind as Kind;
+    let known = match source.kind() {
+        Kind::NotFound => "there is no such file or folder; check the path",
+        Kind::PermissionDenied => {
+            "the system does not permit it; choose another place or change its permissions"
+        }
+        Kind::IsADirectory => "it is a folder; name a file in it",
+        Kind::NotADirectory => "a part of the path is a file and no folder; check the path",
+        Kind::ReadOnlyFilesystem => "nothing can be written there; choose another place",
+        Kind::StorageFull | Kind::QuotaExceeded => {
+            "there is no room left; make some or choose another place"
+        }
+        _ => return source.to_string(),
+    };
+    known.to_owned()
 }
 
 fn prefix(file: &str, field: &str) -> String {

@@ -18,6 +18,11 @@ pub(crate) fn replace(path: &Path, write: impl FnOnce(&mut File) -> Result<()>) 
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
     };
+    if !folder.is_dir() {
+        let (file, folder) = (path.display().to_string(), folder.display());
+        let reason = format!("there is no folder {folder}; make it or choose another");
+        return Err(Error::invalid(file, "", reason));
+    }
     let mut builder = tempfile::Builder::new();
     builder.prefix(".flambeau-").suffix(".tmp");
     #[cfg(unix)]

@@ -51,12 +51,15 @@ impl Purpose {
         }
     }
 
-    /// `path`, with the ending that belongs to it unless it has one already.
-    pub fn complete(self, path: PathBuf) -> PathBuf {
-        match self.extension() {
-            Some(extension) if path.extension().is_none() => path.with_extension(extension),
-            _ => path,
+    /// `path` with the ending that belongs to it, which tells what is in it; of a folder the file
+    /// called `name` there.
+    pub fn complete(self, path: PathBuf, name: &Path) -> PathBuf {
+        let Some(extension) = self.extension() else { return path };
+        let mut path = if path.is_dir() { path.join(name) } else { path };
+        if !path.extension().is_some_and(|present| present.eq_ignore_ascii_case(extension)) {
+            path.as_mut_os_string().push(format!(".{extension}"));
         }
+        path
     }
 }
 
@@ -99,6 +102,7 @@ impl Dialog {
         on_answer: impl FnOnce() + Send + 'static,
     ) -> std::io::Result<Self> {
         let dialog = describe(purpose, suggested);
+        let name = PathBuf::from(suggested.file_name().unwrap_or_default());
         let (sender, answer) = mpsc::channel();
         std::thread::Builder::new().name("dialog".to_owned()).spawn(move || {
             let asked = Instant::now();
@@ -107,7 +111,7 @@ impl Dialog {
                 false => dialog.save_file(),
             };
             let answer = match choice {
-                Some(path) => Answer::Chosen(purpose, purpose.complete(path)),
+                Some(path) => Answer::Chosen(purpose, purpose.complete(path, &name)),
                 None if asked.elapsed() < UNSEEN => Answer::Unavailable(purpose),
                 None => Answer::Cancelled,
             };
@@ -174,7 +178,16 @@ mod tests {
 
     #[test]
     fn saved_files_get_their_ending() {
-        assert_eq!(Purpose::SaveExr.complete("a/b".into()), PathBuf::from("a/b.exr"));
-        assert_eq!(Purpose::SavePng.complete("a/b.PNG".into()), PathBuf::from("a/b.PNG"));
+        let complete =
+            |purpose: Purpose, path: &Path| purpose.complete(path.into(), "n.x".as_ref());
+        let of =
+            |purpose, path: &str| complete(purpose, path.as_ref()).to_string_lossy().into_owned();
+        assert_eq!(of(Purpose::SaveExr, "a/b"), "a/b.exr");
+        assert_eq!(of(Purpose::SavePng, "a/b.PNG"), "a/b.PNG");
+        assert_eq!(of(Purpose::SavePng, "a/b.png2"), "a/b.png2.png");
+        assert_eq!(of(Purpose::SaveScene, "shot.v2"), "shot.v2.toml");
+        assert_eq!(of(Purpose::Open, "a/b"), "a/b");
+        let folder = tempfile::tempdir().unwrap();
+        assert_eq!(complete(Purpose::SaveExr, folder.path()), folder.path().join("n.x.exr"));
     }
 }

@@ -52,8 +52,8 @@ pub fn open(
         return Ok(Opened { settings, notes: guess.notes });
     }
     if !files::has_extension(path, "toml") {
-        let reason = "expected a scene (.toml), a volume (.vdb) or the name of an embedded one \
-                      (builtin:torch)";
+        let reason = "expected a scene (.toml), a volume (.vdb), in the window a snapshot (.exr), \
+                      or the name of an embedded scene (builtin:torch)";
         return Err(Error::unsupported(source, "", reason));
     }
     let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;

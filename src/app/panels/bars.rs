@@ -67,6 +67,8 @@ pub struct PathBar {
     pub purpose: Purpose,
     /// What is typed so far.
     pub text: String,
+    /// What a file is called of which only the folder is typed.
+    name: PathBuf,
     fresh: bool,
     /// Whether the user was told that the file exists and will be replaced.
     warned: bool,
@@ -83,9 +85,11 @@ pub enum Typed {
 }
 
 impl PathBar {
-    /// A bar that starts with `text`.
-    pub fn new(purpose: Purpose, text: String) -> Self {
-        Self { purpose, text, fresh: true, warned: false }
+    /// A bar that starts with `suggested`, a file where one is to be saved.
+    pub fn new(purpose: Purpose, suggested: PathBuf) -> Self {
+        let name = PathBuf::from(suggested.file_name().unwrap_or_default());
+        let text = if purpose.reads() { String::new() } else { suggested.display().to_string() };
+        Self { purpose, text, name, fresh: true, warned: false }
     }
 
     /// Shows the bar. A file that would be replaced has to be confirmed twice.
@@ -107,7 +111,7 @@ impl PathBar {
 
     fn replaces(&self, text: &str) -> bool {
         let path = PathBuf::from(crate::app::files::typed(text));
-        !self.purpose.reads() && self.purpose.complete(path).exists()
+        !self.purpose.reads() && self.purpose.complete(path, &self.name).exists()
     }
 
     fn line(&mut self, ui: &mut Ui) -> Typed {

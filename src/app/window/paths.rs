@@ -56,7 +56,7 @@ impl App {
             return;
         };
         let wake = ctx.clone();
-        let path = purpose.complete(path);
+        let path = purpose.complete(path, &self.suggested_name(purpose));
         if let Content::Scene(settings) = &content {
             self.kept.writes(&path, settings.clone());
         }
@@ -113,11 +113,7 @@ impl App {
 
     /// Shows the bar to type a path in.
     pub(super) fn ask_typed(&mut self, purpose: Purpose) {
-        let text = match purpose {
-            _ if purpose.reads() => String::new(),
-            _ => self.suggested(purpose).to_string_lossy().into_owned(),
-        };
-        self.path_bar = Some(PathBar::new(purpose, text));
+        self.path_bar = Some(PathBar::new(purpose, self.suggested(purpose)));
     }
 
     /// A file beside what is open, or in the present folder.
