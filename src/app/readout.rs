@@ -3,9 +3,12 @@
 use egui::{Align2, Color32, FontId, Painter, Rect, vec2};
 use glam::{UVec2, Vec2};
 
+use super::diagnostics::{Scale, ramp_color};
 use super::display::Look;
 use super::theme::{color, size};
 use super::zoom::Placement;
+use crate::image::tone::{Encoder, linear_from_srgb};
+use crate::math::{Rgb, luminance};
 use crate::render::Picture;
 
 /// Points that a pixel has to span for its values to be written into it.
@@ -30,13 +33,15 @@ pub fn paint(
         let at = (at - area.min) * factor;
         placement.picture_from_viewport(Vec2::new(at.x, at.y)).max(Vec2::ZERO).as_uvec2()
     };
+    let ink = Ink::of(look);
     let (low, high) = (seen(clip.min), seen(clip.max).min(picture.size.saturating_sub(UVec2::ONE)));
     for y in low.y..=high.y {
         for x in low.x..=high.x {
             let corner =
                 (placement.corner + Vec2::new(x as f32, y as f32) * placement.scale) / factor;
             let middle = area.min + vec2(corner.x, corner.y) + vec2(0.5 * side, 0.5 * side);
-            write(&painter, middle, &lines(picture, look, UVec2::new(x, y)));
+            let pixel = UVec2::new(x, y);
+            write(&painter, middle, &lines(picture, look, pixel), ink.on(picture, pixel));
         }
     }
 }
@@ -69,19 +74,54 @@ fn short(value: f32) -> String {
     }
 }
 
-/// Light text on a dark shadow, which reads on any picture.
-fn write(painter: &Painter, middle: egui::Pos2, lines: &[String]) {
+/// Which color can be read on a pixel.
+enum Ink {
+    /// On light, as a tone shows it; of the layer or of the picture itself.
+    Light(Encoder, bool),
+    /// On the color of a number.
+    Number(Scale),
+}
+
+/// Relative luminance from which black has more contrast than white (WCAG 2.1).
+const BRIGHT: f32 = 0.179;
+
+impl Ink {
+    fn of(look: Look) -> Self {
+        match look {
+            Look::Picture(tone) => Self::Light(tone.encoder(), false),
+            Look::Light(tone) => Self::Light(tone.encoder(), true),
+            Look::Numbers(scale) => Self::Number(scale),
+        }
+    }
+
+    fn on(&self, picture: &Picture, pixel: UVec2) -> Color32 {
+        let index = pixel.y as usize * picture.size.x as usize + pixel.x as usize;
+        let code = match self {
+            Self::Light(encoder, of_layer) => {
+                let light = if *of_layer { &picture.layer.light } else { &picture.pixels };
+                let light = light.get(index).map(|[r, g, b, _]| Rgb::new(*r, *g, *b));
+                encoder.encode(light.unwrap_or(Rgb::ZERO))
+            }
+            Self::Number(scale) => {
+                let number = picture.layer.numbers.get(index).copied().unwrap_or(0.0);
+                let [r, g, b, _] = ramp_color(scale.place(number)).to_array();
+                [r, g, b]
+            }
+        };
+        let shown =
+            luminance(Rgb::from(code.map(|code| linear_from_srgb(f32::from(code) / 255.0))));
+        color::ON_PICTURE[usize::from(shown < BRIGHT)]
+    }
+}
+
+/// Writes lines around the middle of a pixel.
+fn write(painter: &Painter, middle: egui::Pos2, lines: &[String], ink: Color32) {
     let font = FontId::proportional(size::SMALL);
     let height = size::SMALL + 1.0;
     let top = middle.y - 0.5 * height * (lines.len() as f32 - 1.0);
     for (index, line) in lines.iter().enumerate() {
         let at = egui::pos2(middle.x, top + height * index as f32);
-        let text = |offset: f32, color: Color32| {
-            let at = at + vec2(offset, offset);
-            painter.text(at, Align2::CENTER_CENTER, line, font.clone(), color);
-        };
-        text(1.0, color::WELL);
-        text(0.0, color::TEXT_STRONG);
+        painter.text(at, Align2::CENTER_CENTER, line, font.clone(), ink);
     }
 }
 
@@ -96,6 +136,22 @@ mod tests {
     fn numbers_fit_into_a_pixel() {
         let texts = [0.0, 0.001_24, 1.5, 99.96, 1234.5, 1.0e9, 4.0e-9, -0.25].map(short);
         assert_eq!(texts, ["0", "0.001", "1.500", "100.0", "1234", "1e9", "4e-9", "-0.250"]);
+    }
+
+    #[test]
+    fn black_is_written_on_bright_pixels_and_white_on_dark_ones() {
+        let picture = Picture {
+            size: UVec2::new(2, 1),
+            pixels: vec![[0.02; 4], [0.9; 4]],
+            layer: LayerMap { numbers: vec![9.0, 0.0], ..LayerMap::default() },
+            ..Picture::default()
+        };
+        let on = |look| [0, 1].map(|x| Ink::of(look).on(&picture, UVec2::new(x, 0)));
+        let [black, white] = color::ON_PICTURE;
+        assert_eq!(on(Look::Picture(Tone::default())), [white, black]);
+        let stops = Tone { exposure: 6.0, ..Tone::default() };
+        assert_eq!(on(Look::Picture(stops)), [black, black], "as it is shown");
+        assert_eq!(on(Look::Numbers(Scale::rounded([0.0, 9.0]))), [black, white]);
     }
 
     #[test]

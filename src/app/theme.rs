@@ -56,6 +56,9 @@ pub mod color {
         Color32::from_rgb(r, g, b)
     }
 
+    /// Numbers written into bright and into dark pixels of the picture.
+    pub const ON_PICTURE: [Color32; 2] = [Color32::BLACK, Color32::WHITE];
+
     /// Something that failed.
     pub const ERROR: Color32 = Color32::from_rgb(238, 126, 112);
 }
