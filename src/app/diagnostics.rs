@@ -68,32 +68,33 @@ impl Diagnostics {
         self.inspector.update(ctx, self.wanted.ray, engine);
     }
 
-    /// How the layer that is wanted in place of `picture` is looked at, once it is there; light as
-    /// `tone` says.
-    pub fn look(&self, picture: &Picture, tone: Tone) -> Option<Look> {
-        let layer = self.wanted.layer.filter(|_| self.wanted.layer == picture.layer.layer)?;
-        match layer.is_light() {
-            true => Some(Look::Light(tone)),
-            false => picture.layer.range.map(|range| Look::Numbers(Scale::rounded(range))),
+    /// How the layer that is wanted in place of `pictures` is looked at, once it is there in all of
+    /// them; light as `tone` says.
+    pub fn look(&self, pictures: &[&Picture], tone: Tone) -> Option<Look> {
+        let layer = self.wanted.layer?;
+        if pictures.iter().any(|picture| picture.layer.layer != Some(layer)) {
+            return None;
+        }
+        if layer.is_light() {
+            return Some(Look::Light(tone));
+        }
+        let ranges = pictures.iter().filter_map(|picture| picture.layer.range);
+        let range = ranges.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)])?;
+        Some(Look::Numbers(Scale::rounded(range)))
+    }
+
+    /// What the colors of `look` mean, where they are the numbers of the layer.
+    pub fn legend(&self, look: Option<Look>) -> Option<Legend> {
+        match look? {
+            Look::Numbers(scale) => self.wanted.layer.map(|layer| Legend::of_layer(layer, scale)),
+            _ => None,
         }
     }
 
-    /// Draws over the picture that lies in `view`, the legends in a corner, `map` that of a map in
-    /// its place, and what lies along the ray of a pixel that was picked.
-    pub fn show(
-        &mut self,
-        ui: &mut Ui,
-        view: View,
-        picture: &Picture,
-        settings: &Settings,
-        map: Option<Legend>,
-    ) {
-        let mut legends: Vec<Legend> = map.into_iter().collect();
-        if let (Some(Look::Numbers(scale)), Some(layer)) =
-            (self.look(picture, Tone::default()), self.wanted.layer)
-        {
-            legends.push(Legend::of_layer(layer, scale));
-        }
+    /// Draws over the picture that lies in `view`, the legends in a corner, `legend` that of what
+    /// takes its place, and what lies along the ray of a pixel that was picked.
+    pub fn show(&mut self, ui: &mut Ui, view: View, settings: &Settings, legend: Option<Legend>) {
+        let mut legends: Vec<Legend> = legend.into_iter().collect();
         if let Some((value, cells)) = self.gathering.cells(self.wanted.cells) {
             if let (Some(scale), Ok(camera)) = (cells.scale(), scene::camera(settings)) {
                 overlay::paint(ui, view, &camera, cells, scale);

@@ -16,10 +16,9 @@ use super::state::{Compared, Document, Side};
 use super::viewport::Shown;
 use super::yardstick::Measure;
 use crate::error::Result;
-use crate::image::tone::Tone;
 use crate::render::compare::{Comparison, NoiseHistory};
 use crate::render::session::{Seat, Sharing};
-use crate::render::{Area, Picture};
+use crate::render::{Area, Layer, Picture};
 use maps::{Difference, Map, MapKind, Noise};
 use part::{Part, PartTask};
 
@@ -184,6 +183,13 @@ impl Duel {
         }
     }
 
+    /// How many sides take turns at the machine, `main` being the engine of the main side.
+    pub fn turns(&self, main: &Engine) -> usize {
+        let is_at_work =
+            |engine: &&Engine| engine.picture().is_none_or(|picture| !picture.stats.finished);
+        std::iter::once(main).chain(self.rival()).filter(is_at_work).count()
+    }
+
     /// Lets it wait for something else, or go on.
     pub fn set_held(&mut self, held: bool) {
         if let Some(rival) = &mut self.rival {
@@ -195,6 +201,13 @@ impl Duel {
     pub fn focus(&mut self, area: Option<Area>) {
         if let Some(rival) = &mut self.rival {
             rival.focus(area);
+        }
+    }
+
+    /// Lets its pictures bring a layer along.
+    pub fn set_layer(&mut self, layer: Option<Layer>) {
+        if let Some(rival) = &mut self.rival {
+            rival.set_layer(layer);
         }
     }
 
@@ -356,23 +369,20 @@ impl Duel {
         map.as_ref().filter(|_| pair.kind == wanted)
     }
 
-    /// What the viewport shows of both sides, `map` in their place if there is one; `None` where
-    /// there is only one.
+    /// What the viewport shows of the `pictures` of both sides, `map` in their place if there is one.
     pub fn shown(
         &self,
         ctx: &Context,
-        engine: &Engine,
-        (tone, active): (Tone, Side),
+        pictures: [Arc<Picture>; 2],
+        (look, active): (Look, Side),
         map: Option<&Map>,
-    ) -> Option<Shown> {
-        let pictures = self.pictures(engine)?;
-        let look = Look::Picture(tone);
+    ) -> Shown {
         if ctx.input(|input| input.key_down(FLIP)) && !ctx.text_edit_focused() {
             let [a, b] = pictures;
             let other = if active == Side::A { b } else { a };
-            return Some(Shown::One(other, look));
+            return Shown::One(other, look);
         }
-        Some(match (self.layout, map) {
+        match (self.layout, map) {
             (Layout::Wipe, _) => Shown::Wipe(pictures, look, self.divider),
             (Layout::Beside, _) => Shown::Beside(pictures, look),
             (_, Some(map)) => Shown::One(map.picture.clone(), map.look),
@@ -380,6 +390,6 @@ impl Duel {
                 let [_, b] = pictures;
                 Shown::One(b, look)
             }
-        })
+        }
     }
 }

@@ -64,14 +64,20 @@ struct Pane<'p> {
 }
 
 impl Shown {
+    /// How it is looked at, where there is a picture.
+    pub fn look(&self) -> Option<Look> {
+        match self {
+            Self::Nothing => None,
+            Self::One(_, look) | Self::Wipe(_, look, _) | Self::Beside(_, look) => Some(*look),
+        }
+    }
+
     /// Whether colors stand for stops.
     pub fn is_false_color(&self) -> bool {
-        match self {
-            Self::Nothing => false,
-            Self::One(_, look) | Self::Wipe(_, look, _) | Self::Beside(_, look) => {
-                matches!(look, Look::Picture(tone) | Look::Light(tone) if tone.channel == Channel::FalseColor)
-            }
-        }
+        matches!(
+            self.look(),
+            Some(Look::Picture(tone) | Look::Light(tone)) if tone.channel == Channel::FalseColor
+        )
     }
 
     fn panes(&self, rect: Rect) -> Vec<Pane<'_>> {
@@ -129,6 +135,8 @@ pub struct Viewport {
     pub zoom: Zoom,
     /// What is under the pointer.
     pub probe: Option<Probe>,
+    /// Whether the keyboard is to go to the picture.
+    pub wants_keyboard: bool,
     /// The area in framebuffer pixels that the film fills, once it has lasted.
     settled: Option<UVec2>,
     /// The area of the last frame and since when it has been so.
@@ -188,6 +196,9 @@ impl Viewport {
         let rect = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(rect, Sense::click_and_drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Image, true, "Picture"));
+        if std::mem::take(&mut self.wants_keyboard) {
+            response.request_focus();
+        }
         let factor = ui.pixels_per_point();
         let panes = shown.panes(rect);
         let under = response.hover_pos();

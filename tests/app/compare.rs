@@ -2,7 +2,9 @@
 
 use egui::accesskit::Role;
 use egui::{Key, Modifiers};
+use egui_kittest::kittest::Queryable;
 use flambeau::app::{Layout, Side};
+use flambeau::render::Layer;
 use flambeau::render::compare::Verdict;
 use flambeau::transport::strategy::Preset;
 
@@ -97,6 +99,43 @@ fn each_way_to_look_at_both_sides_has_its_picture() {
     }
     window.press(Modifiers::NONE, Key::V);
     assert_eq!(window.app().duel().layout, Layout::Wipe);
+}
+
+/// A layer is looked at on both sides as the picture is, and a map of both goes before it.
+#[test]
+fn layers_are_compared_and_maps_go_before_them() {
+    let Some(mut window) = open() else { return };
+    window.press(Modifiers::NONE, Key::C);
+    window.until_compared();
+    window.click(Role::ComboBox, "Layer");
+    window.click(Role::Button, Layer::Steps.name());
+    window.until("both sides bring the layer", |app| {
+        let pictures = app.duel().pictures(app.engine()).unwrap();
+        pictures.iter().all(|picture| picture.layer.layer == Some(Layer::Steps))
+    });
+    assert!(window.has("Tracking steps per sample") && window.has("Layer: "));
+    assert!(window.has("A  Baseline"), "the wipe is there still");
+    window.click(Role::Button, "Difference");
+    window.until("the map is there", |app| app.duel().map().is_some());
+    assert!(window.has("B - A, gray") && !window.has("Tracking steps per sample"));
+}
+
+/// What comes and goes above it pushes nothing from under the pointer.
+#[test]
+fn the_panel_stays_where_the_hand_is() {
+    let Some(mut window) = open() else { return };
+    let row = |window: &Window| {
+        window.harness.get_by_role_and_label(Role::SpinButton, "Angle of view").rect()
+    };
+    window.harness.get_by_role_and_label(Role::SpinButton, "Angle of view").scroll_to_me();
+    window.settle();
+    let before = row(&window);
+    window.harness.hover_at(before.center());
+    window.press(Modifiers::NONE, Key::C);
+    window.until_compared();
+    assert!((row(&window).center() - before.center()).length() < 1.0, "{:?}", row(&window));
+    window.press(Modifiers::NONE, Key::C);
+    assert!((row(&window).center() - before.center()).length() < 1.0, "{:?}", row(&window));
 }
 
 /// Camera edits go to both sides, which take turns until both have the samples.

@@ -19,8 +19,7 @@ impl App {
             Shown::Wipe(..) | Shown::Beside(..) => self.side_titles(),
             Shown::One(..) | Shown::Nothing => Vec::new(),
         };
-        let map = self.map().map(|map| Legend::of_map(map.kind, map.key));
-        let legend = map.or_else(|| shown.is_false_color().then(Legend::of_stops));
+        let legend = self.legend(&shown);
         SavedView {
             shown,
             names,
@@ -29,6 +28,13 @@ impl App {
             words: self.words(),
             tables: self.tables(),
         }
+    }
+
+    /// What the colors of what is shown mean, where they are not those of the picture.
+    pub(super) fn legend(&self, shown: &Shown) -> Option<Legend> {
+        let map = self.map().map(|map| Legend::of_map(map.kind, map.key));
+        map.or_else(|| shown.is_false_color().then(Legend::of_stops))
+            .or_else(|| self.diagnostics.legend(shown.look()))
     }
 
     /// What A and B are; nothing where there is one picture.
