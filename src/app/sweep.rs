@@ -17,6 +17,11 @@ use crate::scene::Settings;
 use crate::scene::effect::no_effect_with;
 use crate::transport::Scene;
 
+/// The part of a sweep after which every strategy has begun, which takes longer than to go on.
+const SET_UP: f64 = 0.1;
+/// The part of it behind that by which its pace is known.
+const PACED: f64 = 0.05;
+
 /// What is tried, and what came out last.
 pub struct Sweep {
     /// CPU seconds of each strategy.
@@ -46,8 +51,8 @@ struct Running {
     stop: Arc<AtomicBool>,
     reports: mpsc::Receiver<Report>,
     progress: Progress,
-    /// When rendering began.
-    since: Instant,
+    /// When and at which part of it all strategies were at work, so that the pace is known.
+    since: Option<(Instant, f64)>,
 }
 
 /// What the thread has to say.
@@ -106,8 +111,9 @@ impl Sweep {
             return self.wanted.then_some((Progress::Preparing(0, 1), None));
         };
         let left = match running.progress {
-            Progress::Rendering(part) if part > 0.02 => {
-                Some(running.since.elapsed().mul_f64((1.0 - part) / part))
+            Progress::Rendering(part) => {
+                let since = running.since.filter(|(_, then)| part > then + PACED);
+                since.map(|(since, then)| since.elapsed().mul_f64((1.0 - part) / (part - then)))
             }
             _ => None,
         };
@@ -186,7 +192,7 @@ impl Sweep {
             .spawn(run)
             .map_err(|error| Error::io("the thread that tries strategies", error))?;
         let (settings, progress) = (settings.clone(), Progress::Preparing(0, 1));
-        Ok(Running { settings, stop, reports, progress, since: Instant::now() })
+        Ok(Running { settings, stop, reports, progress, since: None })
     }
 }
 
@@ -207,8 +213,11 @@ impl Running {
         loop {
             match self.reports.try_recv() {
                 Ok(Report::Progress(progress)) => {
-                    if matches!(self.progress, Progress::Preparing(..)) {
-                        self.since = Instant::now();
+                    if let Progress::Rendering(part) = progress
+                        && part > SET_UP
+                        && self.since.is_none()
+                    {
+                        self.since = Some((Instant::now(), part));
                     }
                     self.progress = progress;
                 }

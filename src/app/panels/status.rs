@@ -44,7 +44,7 @@ pub fn show(
         }
         match engine.picture() {
             _ if let Some(item) = stored => stored_figures(ui, item),
-            Some(picture) => progress(ui, &picture.stats, engine),
+            Some(picture) => progress(ui, &picture.stats, engine, panel.turns),
             None => {
                 let opening = engine.opening().is_some() || engine.built().is_some();
                 let text =
@@ -95,7 +95,7 @@ pub fn samples(spp: f64) -> String {
     if spp < 10.0 { format!("{spp:.1}") } else { format!("{spp:.0}") }
 }
 
-fn progress(ui: &mut Ui, stats: &RenderStats, engine: &Engine) {
+fn progress(ui: &mut Ui, stats: &RenderStats, engine: &Engine, turns: usize) {
     let spp = samples(stats.samples_per_pixel);
     figure(ui, &spp, "spp", "Samples per pixel so far.", 38.0);
     figure(ui, &seconds(stats.seconds), "", "Time spent on this picture.", 50.0);
@@ -116,22 +116,30 @@ fn progress(ui: &mut Ui, stats: &RenderStats, engine: &Engine) {
     }
     let state = match (engine.paused(), stats.finished) {
         (true, _) => "paused",
-        (false, false) if engine.held() => "waiting",
+        (false, false) if engine.held() => "waiting for the trial",
         (false, true) => "finished",
-        (false, false) => return time_left(ui, stats, engine),
+        (false, false) if engine.picture().is_some_and(|picture| picture.focus.is_some()) => {
+            "rectangle only"
+        }
+        (false, false) => return ending(ui, stats, engine, turns),
     };
     ui.label(RichText::new(state).color(color::ACCENT));
 }
 
-/// How long a render with an end will take to get there.
-fn time_left(ui: &mut Ui, stats: &RenderStats, engine: &Engine) {
+/// How long a render with an end will take to get there, one of so many that take turns.
+fn ending(ui: &mut Ui, stats: &RenderStats, engine: &Engine, turns: usize) {
     let wanted = engine.built().map_or(0, |built| built.settings.film.spp);
     // A rectangle that gets all samples has another pace than the picture.
     let is_whole = engine.picture().is_some_and(|picture| picture.focus.is_none());
     let Some(left) = seconds_left(stats, wanted).filter(|_| is_whole) else { return };
-    let left = if left < 60.0 { format!("{:.0} s", left.ceil()) } else { seconds(left) };
-    let text = RichText::new(format!("{left} left")).color(color::TEXT_DIM);
+    let left = left * turns.max(1) as f64;
+    let text = RichText::new(format!("{} left", time_left(left))).color(color::TEXT_DIM);
     ui.label(text).on_hover_text(format!("Until each pixel has {wanted} samples."));
+}
+
+/// Seconds that are left, in words.
+pub fn time_left(left: f64) -> String {
+    if left < 60.0 { format!("{:.0} s", left.ceil()) } else { seconds(left) }
 }
 
 /// At the pace so far; none before there is one, at the end, and where there is no end.
@@ -258,6 +266,11 @@ fn display(ui: &mut Ui, panel: &mut Panel<'_>) {
         edit = Some("exposure");
     }
     ui.label(RichText::new("exposure").color(color::TEXT_DIM));
+    if let Some(layer) = panel.wanted.layer {
+        let text = RichText::new(format!("Layer: {}", layer.name())).color(color::ACCENT);
+        ui.label(text)
+            .on_hover_text("Shown in place of the picture. Display, in the panel, has it.");
+    }
     if let Some(name) = edit {
         panel.editor.name_edit(name);
     }

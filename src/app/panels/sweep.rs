@@ -4,9 +4,10 @@ mod bar;
 
 use std::time::Duration;
 
-use egui::{Button, Context, DragValue, Grid, Label, RichText, ScrollArea, Ui, Window, vec2};
+use egui::{Button, Context, DragValue, Grid, Label, Rect, RichText, ScrollArea, Ui, Window, vec2};
 
 use super::explain;
+use super::status::time_left;
 use crate::app::commands::Command;
 use crate::app::state::Editor;
 use crate::app::sweep::{Results, Sweep};
@@ -19,8 +20,8 @@ use bar::Axis;
 
 /// Width of the window's contents.
 const WIDTH: f32 = 640.0;
-/// Room above and below it that it leaves.
-const AROUND: f32 = 150.0;
+/// What the window has above and below the results.
+const AROUND: f32 = 110.0;
 /// Width of a column of times.
 const TIME: f32 = 92.0;
 
@@ -32,25 +33,31 @@ pub fn progress((progress, left): &(Progress, Option<Duration>)) -> (String, f32
         }
         Progress::Rendering(part) => {
             let left = left.map_or_else(String::new, |left| {
-                format!(": {:.0} s left", left.as_secs_f64().ceil())
+                format!(": {} left", time_left(left.as_secs_f64()))
             });
             (format!("Trying strategies{left}"), *part as f32)
         }
     }
 }
 
-/// Shows the results while they are open.
-pub fn show(ctx: &Context, sweep: &mut Sweep, editor: &mut Editor, commands: &mut Vec<Command>) {
+/// Shows the results over `area`, while they are open. What is asked below the picture stays in sight.
+pub fn show(
+    ctx: &Context,
+    area: Rect,
+    sweep: &mut Sweep,
+    editor: &mut Editor,
+    commands: &mut Vec<Command>,
+) {
     if sweep.results().is_none() {
         return;
     }
     let mut open = sweep.open;
-    let area = ctx.content_rect();
     Window::new("Strategies on this shot")
         .open(&mut open)
         .resizable(false)
         .collapsible(false)
-        .default_pos(area.left_top() + vec2(24.0, 48.0))
+        .default_pos(area.left_top() + vec2(24.0, 16.0))
+        .constrain_to(area)
         .show(ctx, |ui| {
             ui.set_width(WIDTH.min(area.width() - 60.0));
             let height = (area.height() - AROUND).max(120.0);

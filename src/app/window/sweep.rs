@@ -1,7 +1,7 @@
 //! Where the window meets the sweep of all strategies: its progress below the picture, its results
 //! in a window of their own, and the live render that waits for it.
 
-use egui::{Context, Ui};
+use egui::{Context, Rect, Ui};
 
 use super::App;
 use crate::app::commands::Command;
@@ -35,8 +35,8 @@ impl App {
         }
     }
 
-    /// Shows what was found.
-    pub(super) fn sweep_window(&mut self, ctx: &Context, commands: &mut Vec<Command>) {
-        sweep::show(ctx, &mut self.sweep, &mut self.editor, commands);
+    /// Shows what was found over what the bars leave of the picture, `area`.
+    pub(super) fn sweep_window(&mut self, ctx: &Context, area: Rect, commands: &mut Vec<Command>) {
+        sweep::show(ctx, area, &mut self.sweep, &mut self.editor, commands);
     }
 }
