@@ -428,9 +428,13 @@ fn same_scene(a: &Settings, b: &Settings) -> bool {
 
 /// Whether two settings show the same: all but the film and the strategy decides.
 pub fn same_shot(a: &Settings, b: &Settings) -> bool {
-    let Settings { camera, film: _, path, environment, volume, light, surface, strategy: _ } = a;
-    *camera == b.camera
-        && *path == b.path
+    a.camera == b.camera && same_matter(a, b)
+}
+
+/// Whether two settings are of the same things under the same light, wherever the camera is.
+pub fn same_matter(a: &Settings, b: &Settings) -> bool {
+    let Settings { camera: _, film: _, path, environment, volume, light, surface, strategy: _ } = a;
+    *path == b.path
         && *environment == b.environment
         && *volume == b.volume
         && *light == b.light

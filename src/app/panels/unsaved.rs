@@ -24,8 +24,9 @@ pub enum Answer {
     Stay,
 }
 
-/// Asks about the changes of the scene called `title`.
-pub fn ask(ui: &mut Ui, title: &str, losing: &Losing) -> Option<Answer> {
+/// Asks about the changes of the scene called `title`. A `fresh` question takes the keyboard, and
+/// is fresh until it has.
+pub fn ask(ui: &mut Ui, title: &str, losing: &Losing, fresh: &mut bool) -> Option<Answer> {
     let discard = match losing {
         Losing::Close => "Close without saving",
         Losing::Open(_) => "Open without saving",
@@ -40,8 +41,13 @@ pub fn ask(ui: &mut Ui, title: &str, losing: &Losing) -> Option<Answer> {
         ui.label(RichText::new(text).color(color::WARNING));
         let mut answer = None;
         for (text, says, help) in buttons {
-            if ui.add(Button::new(text)).on_hover_text(help).clicked() {
+            let button = ui.add(Button::new(text)).on_hover_text(help);
+            if button.clicked() {
                 answer = Some(says);
+            }
+            if *fresh && says == Answer::Save {
+                *fresh = !button.has_focus();
+                button.request_focus();
             }
         }
         answer
