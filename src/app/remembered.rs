@@ -1,6 +1,7 @@
 //! What the window remembers between runs: how it is laid out, how pictures are shown, which files
 //! were open. Never the scene or the strategy.
 
+use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -27,6 +28,10 @@ pub struct Remembered {
     pub references: Vec<(String, PathBuf)>,
     /// Whether the panels are folded.
     pub folded: bool,
+    /// Parts of the panel column that are open or folded against what they were at the first start.
+    pub sections: BTreeMap<String, bool>,
+    /// How much larger text and controls are than the screen asks for; 0 where none was chosen.
+    pub scale: f32,
     /// Whether a start without a file shows what to begin with.
     pub start: bool,
     /// The tone curve, by its name.
@@ -45,6 +50,8 @@ impl Default for Remembered {
             recent: Vec::new(),
             references: Vec::new(),
             folded: false,
+            sections: BTreeMap::new(),
+            scale: 0.0,
             start: true,
             curve: String::new(),
             exposure: 0.0,
@@ -94,7 +101,6 @@ impl Remembered {
     pub fn tone(&self) -> Tone {
         let plain = Tone::default();
         let curve = ToneCurve::ALL.into_iter().find(|curve| curve.name() == self.curve);
-        let sane = |value: f32, or: f32| if value.is_finite() && value != 0.0 { value } else { or };
         Tone {
             curve: curve.unwrap_or_default(),
             exposure: sane(self.exposure, 0.0).clamp(-20.0, 20.0),
@@ -104,6 +110,12 @@ impl Remembered {
         }
     }
 
+    /// How much larger text and controls are to be than the screen asks for, where that was chosen.
+    pub fn scale(&self) -> Option<f32> {
+        let scale = sane(self.scale, 1.0).clamp(0.5, 3.0);
+        (scale != 1.0).then_some(scale)
+    }
+
     /// Notes how pictures are shown. Which channel is looked at passes.
     pub fn note_tone(&mut self, tone: Tone) {
         self.curve = tone.curve.name().to_owned();
@@ -111,6 +123,11 @@ impl Remembered {
         self.white = tone.white;
         self.tint = tone.tint;
     }
+}
+
+/// A number that was chosen, or else `or`.
+fn sane(value: f32, or: f32) -> f32 {
+    if value.is_finite() && value != 0.0 { value } else { or }
 }
 
 /// The name of what was opened, the same from every folder.

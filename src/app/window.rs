@@ -28,6 +28,7 @@ use super::gizmo::Gizmo;
 use super::notices::{Level, Notice, Notices};
 use super::panels::bars::PathBar;
 use super::panels::palette::Palette;
+use super::panels::sections::Sections;
 use super::panels::start::Start;
 use super::rectangle::Rectangle;
 use super::remembered::{Remembered, full_name};
@@ -85,6 +86,7 @@ pub struct App {
     /// What was guessed when it was opened.
     notes: Vec<Note>,
     folded: bool,
+    sections: Sections,
     /// Whether the picture has the whole screen.
     full_screen: bool,
     help: bool,
@@ -128,6 +130,7 @@ impl App {
         let references = remembered.references.clone();
         let mut editor = Editor::default();
         editor.document.tone = remembered.tone();
+        remembered.scale().inspect(|&scale| ctx.set_zoom_factor(scale));
         Ok(Self {
             editor,
             engine,
@@ -148,6 +151,7 @@ impl App {
             source,
             notes: Vec::new(),
             folded: remembered.folded,
+            sections: Sections::install(ctx, remembered.sections.clone()),
             full_screen: false,
             help: false,
             start: (is_plain && remembered.start).then(Start::default),
@@ -221,6 +225,7 @@ impl App {
             commands.retain(|command| *command != Command::LivePicture);
         }
         self.layout(ui, &mut commands);
+        self.sections.settle();
         for command in commands {
             self.execute(&ctx, command);
         }
@@ -231,6 +236,7 @@ impl App {
         }
         self.bring_up_to_date(&ctx);
         self.watch_over_changes(&ctx);
+        self.remembered.scale = ctx.zoom_factor();
     }
 
     /// Waits until the next frame may begin, before it takes in what there is.
@@ -257,7 +263,7 @@ impl App {
             match item {
                 News::Opened { source, settings, notes, reopened } => {
                     self.notes = notes;
-                    self.kept.opened(&settings);
+                    self.kept.opened(&source, &settings);
                     self.gizmo = Gizmo::default();
                     self.editor.open(*settings, reopened.is_some());
                     self.viewport.zoom = Default::default();
@@ -321,6 +327,7 @@ impl App {
 
     fn bring_up_to_date(&mut self, ctx: &Context) {
         self.diagnostics.update(ctx, &mut self.engine);
+        self.duel.set_layer(self.diagnostics.wanted.layer);
         self.update_versus();
         let Some(size) = self.film_size() else { return };
         let alone = self.rectangle.alone(size);

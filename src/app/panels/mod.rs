@@ -4,6 +4,7 @@ pub mod advanced;
 pub mod bars;
 pub mod camera;
 mod chooser;
+pub mod column;
 pub mod compare;
 pub mod diagnostics;
 pub mod display;
@@ -19,6 +20,7 @@ pub mod noise_plot;
 pub mod palette;
 pub mod placement;
 pub mod ramp;
+pub mod sections;
 pub mod start;
 pub mod status;
 pub mod strategy;
@@ -28,7 +30,9 @@ pub mod sweep;
 pub mod unsaved;
 pub mod volume;
 
-use egui::{CollapsingHeader, RichText, Ui};
+use egui::{RichText, Ui};
+
+pub use sections::{folded_section, section};
 
 use super::commands::Command;
 use super::diagnostics::Wanted;
@@ -56,6 +60,8 @@ pub struct Panel<'a> {
     pub guided_flights: Option<f32>,
     /// The other side of a comparison.
     pub duel: &'a Duel,
+    /// How many sides take turns at the machine.
+    pub turns: usize,
     /// The reference and the errors against it.
     pub yardstick: &'a mut Yardstick,
     /// What is shown to understand the render.
@@ -66,23 +72,6 @@ pub struct Panel<'a> {
     pub reopened: &'a mut Option<String>,
     /// Commands that buttons ask for.
     pub commands: &'a mut Vec<Command>,
-}
-
-/// A part of the panel column under a heading that folds it.
-pub fn section(ui: &mut Ui, title: &str, contents: impl FnOnce(&mut Ui)) {
-    section_under(ui, title, true, contents);
-}
-
-/// The same, folded until asked for.
-pub fn folded_section(ui: &mut Ui, title: &str, contents: impl FnOnce(&mut Ui)) {
-    section_under(ui, title, false, contents);
-}
-
-fn section_under(ui: &mut Ui, title: &str, open: bool, contents: impl FnOnce(&mut Ui)) {
-    let title = RichText::new(title).heading().color(color::TEXT_STRONG);
-    CollapsingHeader::new(title).default_open(open).show_unindented(ui, contents);
-    ui.add_space(super::theme::space::TIGHT);
-    ui.separator();
 }
 
 /// Small dim text that explains.

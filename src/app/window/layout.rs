@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use egui::{Context, Frame, Margin, ScrollArea, Ui, UiBuilder};
+use egui::{Context, Frame, Margin, Rect, Ui};
 use glam::UVec2;
 
 use super::App;
 use crate::app::commands::Command;
-use crate::app::diagnostics::{Legend, show_legends};
+use crate::app::diagnostics::show_legends;
 use crate::app::display::Look;
 use crate::app::files::typed;
 use crate::app::panels::bars::{self, Dropped, Typed};
@@ -17,11 +17,13 @@ use crate::app::panels::{self, Panel};
 use crate::app::remembered::Remembered;
 use crate::app::theme::{self, color, space};
 use crate::app::viewport::Shown;
+use crate::render::Picture;
 
 impl App {
     /// Shows everything and gathers the commands that it is asked for.
     pub(super) fn layout(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
-        let title = self.title();
+        let mark = if self.has_unsaved_changes() { "* " } else { "" };
+        let title = format!("{mark}{}", self.title());
         let plain = self.panel_frame();
         let grids = self.engine.grids().clone();
         let edited = self.duel.edited(&self.engine);
@@ -35,6 +37,7 @@ impl App {
             selected_light: &mut self.gizmo.selected,
             guided_flights: edited.picture().and_then(|picture| picture.stats.guided_flights),
             duel: &self.duel,
+            turns: self.duel.turns(&self.engine),
             yardstick: &mut self.yardstick,
             wanted: &mut self.diagnostics.wanted,
             recent: &self.remembered.recent,
@@ -53,15 +56,15 @@ impl App {
         }
         if !self.folded && !self.full_screen {
             let film = self.viewport.film_size();
-            column(ui, &mut panel, plain, film, self.largest);
+            panels::column::show(ui, &mut panel, plain, (film, self.largest), &self.sections);
         }
-        egui::CentralPanel::no_frame().show(ui, |ui| self.picture_area(ui));
+        let area = egui::CentralPanel::no_frame().show(ui, |ui| self.picture_area(ui)).inner;
         panels::help::show(ui.ctx(), &mut self.help);
         self.palette_window(ui, commands);
         if let Some(path) = reopened {
             self.open_unless_lost(&path);
         }
-        self.sweep_window(ui.ctx(), commands);
+        self.sweep_window(ui.ctx(), area, commands);
     }
 
     /// What fixed panels lie on. A window that is cleared to their color spares the painting,
@@ -71,8 +74,8 @@ impl App {
     }
 
     /// The picture with the bars that come and go at its edges. The film takes the whole area, so
-    /// that a bar never restarts the render.
-    fn picture_area(&mut self, ui: &mut Ui) {
+    /// that a bar never restarts the render. What the bars leave of it.
+    fn picture_area(&mut self, ui: &mut Ui) -> Rect {
         let area = ui.available_size() * ui.pixels_per_point();
         let area = UVec2::new(area.x.round() as u32, area.y.round() as u32);
         if let Some(wait) = self.viewport.resize(area, self.largest) {
@@ -96,35 +99,37 @@ impl App {
                 .frame(theme::panel_frame())
                 .show(ui, |ui| self.notices.show(ui));
         }
-        let picture = self.shown_picture().cloned();
+        let has_picture = self.shown_picture().is_some();
         let shown = self.shown(ui.ctx());
         let is_live = self.snapshots.picture().is_none() || self.versus.is_some();
         let is_plain = self.map().is_none();
-        let map = self.map().map(|map| Legend::of_map(map.kind, map.key));
-        let map = map.or_else(|| shown.is_false_color().then(Legend::of_stops));
-        egui::CentralPanel::no_frame().show(ui, |ui| {
-            let rect = ui.available_rect_before_wrap();
-            let views = self.viewport.show(ui, &mut self.editor, &shown, &mut self.rectangle);
-            let first = views.first().copied();
-            // What is drawn over the picture is about the live one.
-            if let (true, Some(view), Some(picture)) = (is_live, first, &picture) {
-                self.diagnostics.show(ui, view, picture, &self.editor.document.settings, map);
-            } else if let (Some(view), Some(map)) = (first, map) {
-                show_legends(ui, view.rect, &[map]);
-            }
-            views.iter().for_each(|view| self.rectangle.paint(ui, view));
-            if is_live {
-                self.compare_marks(ui, rect);
-            }
-            let clicked = first.is_some_and(|view| view.clicked.is_some());
-            if clicked && !self.diagnostics.wanted.ray {
-                self.rectangle.remove();
-            }
-            if let Some(view) = first.filter(|_| is_live && is_plain) {
-                let pivot = self.subject_bounds().center();
-                self.gizmo.show(ui, view, &mut self.editor, pivot);
-            }
-        });
+        let legend = self.legend(&shown);
+        egui::CentralPanel::no_frame()
+            .show(ui, |ui| {
+                let rect = ui.available_rect_before_wrap();
+                let views = self.viewport.show(ui, &mut self.editor, &shown, &mut self.rectangle);
+                let first = views.first().copied();
+                // What is drawn over the picture is about the live one.
+                if let (true, Some(view), true) = (is_live, first, has_picture) {
+                    self.diagnostics.show(ui, view, &self.editor.document.settings, legend);
+                } else if let (Some(view), Some(legend)) = (first, legend) {
+                    show_legends(ui, view.rect, &[legend]);
+                }
+                views.iter().for_each(|view| self.rectangle.paint(ui, view));
+                if is_live {
+                    self.compare_marks(ui, rect);
+                }
+                let clicked = first.is_some_and(|view| view.clicked.is_some());
+                if clicked && !self.diagnostics.wanted.ray && !self.rectangle.remove() {
+                    self.gizmo.selected = None;
+                }
+                if let Some(view) = first.filter(|_| is_live && is_plain && !self.full_screen) {
+                    let pivot = self.subject_bounds().center();
+                    self.gizmo.show(ui, view, &mut self.editor, pivot);
+                }
+                rect
+            })
+            .inner
     }
 
     /// What the picture area shows.
@@ -141,16 +146,16 @@ impl App {
             };
         }
         let Some(picture) = self.engine.picture() else { return Shown::Nothing };
-        if let Some(look) = self.diagnostics.look(picture, tone) {
-            return Shown::One(picture.clone(), look);
+        let layer = |pictures: &[&Picture]| self.diagnostics.look(pictures, tone).unwrap_or(look);
+        let pictures = self.duel.pictures(&self.engine);
+        if let Some((active, pictures)) = self.active_side().zip(pictures) {
+            let look = layer(&pictures.each_ref().map(|picture| &**picture));
+            return self.duel.shown(ctx, pictures, (look, active), map);
         }
-        let both = self
-            .active_side()
-            .and_then(|active| self.duel.shown(ctx, &self.engine, (tone, active), map));
-        both.unwrap_or_else(|| match map.filter(|_| !self.duel.is_on()) {
+        match map.filter(|_| !self.duel.is_on()) {
             Some(map) => Shown::One(map.picture.clone(), map.look),
-            None => Shown::One(picture.clone(), look),
-        })
+            None => Shown::One(picture.clone(), layer(&[picture])),
+        }
     }
 
     /// Asks what a dropped picture is for.
@@ -227,28 +232,4 @@ fn drop_row(ui: &mut Ui) {
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let frame = theme::panel_frame();
     egui::Panel::bottom("drop").frame(frame).show(ui, |ui| bars::drop_hint(ui, &name));
-}
-
-/// The column of panels.
-fn column(ui: &mut Ui, panel: &mut Panel<'_>, frame: Frame, film: Option<UVec2>, largest: u32) {
-    let place = egui::Panel::right("column").exact_size(space::COLUMN).resizable(false);
-    place.frame(frame).show(ui, |ui| {
-        // A child of its own: contents that are too wide are cut off and push nothing aside.
-        let room = ui.max_rect();
-        let mut ui = ui.new_child(UiBuilder::new().max_rect(room));
-        ui.shrink_clip_rect(room);
-        ScrollArea::vertical().auto_shrink(false).show(&mut ui, |ui| {
-            let inner = Frame::new().inner_margin(Margin::same(space::PANEL));
-            inner.show(ui, |ui| {
-                panels::strategy::show(ui, panel);
-                panels::volume::show(ui, panel);
-                panels::lights::show(ui, panel);
-                panels::surfaces::show(ui, panel);
-                panels::camera::show(ui, panel);
-                panels::film::show(ui, panel, film, largest);
-                panels::display::show(ui, panel);
-                panels::diagnostics::show(ui, panel.wanted);
-            });
-        });
-    });
 }
