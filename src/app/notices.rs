@@ -1,5 +1,7 @@
-//! Messages that stay until dismissed, below the picture and never over it.
+//! Messages below the picture and never over it. Failures stay until dismissed; what went well leaves
+//! by itself.
 
+use egui::accesskit::Live;
 use egui::{Frame, Margin, RichText, Stroke, Ui};
 
 use super::theme::{color, space};
@@ -7,7 +9,8 @@ use super::theme::{color, space};
 /// How grave a notice is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Level {
-    /// Something went well and is worth saying, such as a saved file. Leaves with the next one.
+    /// Something went well and is worth saying, such as a saved file. Leaves with the next one,
+    /// or after a while.
     Done,
     /// Something failed; what was there before is still there.
     Failed,
@@ -28,10 +31,14 @@ pub struct Notice {
 #[derive(Debug, Default)]
 pub struct Notices {
     list: Vec<Notice>,
+    /// Since when, in seconds of the window's clock, the one that leaves by itself is shown.
+    since: Option<f64>,
 }
 
 /// More than this many would crowd the picture out.
 const MOST: usize = 3;
+/// Seconds for which a message that leaves by itself is shown.
+const STAY: f64 = 12.0;
 
 impl Notices {
     /// Says that something went well.
@@ -52,6 +59,7 @@ impl Notices {
     /// Shows a message.
     pub fn push(&mut self, notice: Notice) {
         self.list.retain(|old| old.level == Level::Failed && *old != notice);
+        self.since = None;
         self.list.push(notice);
         if self.list.len() > MOST {
             self.list.remove(0);
@@ -72,18 +80,37 @@ impl Notices {
     pub fn show(&mut self, ui: &mut Ui) {
         let mut dismissed = None;
         for (index, notice) in self.list.iter().enumerate() {
-            if bar(ui, notice) {
+            let (rect, is_dismissed) = bar(ui, notice);
+            if is_dismissed {
                 dismissed = Some(index);
+            }
+            // Who reads it or is about to copy its text keeps it.
+            if notice.level == Level::Done && ui.rect_contains_pointer(rect) {
+                self.since = None;
             }
         }
         if let Some(index) = dismissed {
             self.list.remove(index);
         }
+        self.leave(ui);
+    }
+
+    /// Lets what went well leave after a while.
+    fn leave(&mut self, ui: &Ui) {
+        if !self.list.iter().any(|notice| notice.level == Level::Done) {
+            return;
+        }
+        let now = ui.input(|input| input.time);
+        let left = STAY - (now - *self.since.get_or_insert(now));
+        match left > 0.0 {
+            true => ui.ctx().request_repaint_after(std::time::Duration::from_secs_f64(left)),
+            false => self.clear(Level::Done),
+        }
     }
 }
 
-/// Shows one notice; whether it was dismissed.
-fn bar(ui: &mut Ui, notice: &Notice) -> bool {
+/// Shows one notice; where, and whether it was dismissed. A screen reader reads it out.
+fn bar(ui: &mut Ui, notice: &Notice) -> (egui::Rect, bool) {
     let (accent, heading) = match notice.level {
         Level::Done => (color::ACCENT, "Done"),
         Level::Failed => (color::ERROR, "Failed"),
@@ -102,7 +129,9 @@ fn bar(ui: &mut Ui, notice: &Notice) -> bool {
             ui.allocate_ui(egui::vec2(width, 0.0), |ui| {
                 ui.set_width(width);
                 let text = RichText::new(&notice.text).color(color::TEXT_STRONG);
-                ui.add(egui::Label::new(text).wrap().selectable(true));
+                let label = ui.add(egui::Label::new(text).wrap().selectable(true));
+                let live = if notice.level == Level::Done { Live::Polite } else { Live::Assertive };
+                ui.ctx().accesskit_node_builder(label.id, |node| node.set_live(live));
             });
             ui.with_layout(egui::Layout::right_to_left(egui::Align::TOP), |ui| {
                 ui.button("Dismiss").on_hover_text("Close this message.").clicked()
@@ -111,7 +140,7 @@ fn bar(ui: &mut Ui, notice: &Notice) -> bool {
         })
         .inner
     });
-    output.inner
+    (output.response.rect, output.inner)
 }
 
 #[cfg(test)]

@@ -3,8 +3,8 @@
 use std::ops::RangeInclusive;
 
 use egui::{
-    Align, Button, DragValue, Label, Layout, Response, RichText, Sense, Slider, SliderClamping, Ui,
-    vec2,
+    Align, Button, ComboBox, DragValue, Label, Layout, Response, RichText, Sense, Slider,
+    SliderClamping, Ui, vec2,
 };
 
 use super::commands::Command;
@@ -16,6 +16,9 @@ use crate::scene::settings::Color;
 const ROOM_BESIDE_LABEL: usize = 24;
 /// Letters that the frame of a button takes the room of.
 const LETTERS_OF_FRAME: usize = 2;
+
+/// Width of a list that drops down, in points.
+const LIST: f32 = 120.0;
 
 /// The help of a key of the scene file, ready for a tooltip.
 pub fn key_help(path: &str) -> String {
@@ -227,11 +230,36 @@ impl Vector<'_> {
                     .custom_parser(finite);
                 ui.add_sized([width, space::ROW_HEIGHT], field)
                     .accessible_name(format!("{} {axis}", self.name))
-                    .on_hover_text(&help);
+                    .on_hover_text(format!("{axis}: {help}"));
             }
         });
         *value != before
     }
+}
+
+/// A list that drops down, `choices` with their names and help; whether another one was chosen.
+pub fn list<T: Copy + PartialEq>(
+    ui: &mut Ui,
+    (name, help): (&str, &str),
+    value: &mut T,
+    choices: &[(T, &str, &str)],
+) -> bool {
+    let before = *value;
+    let shown = choices.iter().find(|(choice, ..)| *choice == before).map_or("", |choice| choice.1);
+    let list = ComboBox::from_id_salt(name).selected_text(shown).width(LIST).height(f32::INFINITY);
+    let list = list.show_ui(ui, |ui| {
+        for (choice, text, help) in choices {
+            let response = ui.selectable_label(*choice == before, *text);
+            let response = if help.is_empty() { response } else { response.on_hover_text(*help) };
+            if response.clicked() {
+                *value = *choice;
+                // By a key too, which clicks beside nothing.
+                ui.close();
+            }
+        }
+    });
+    list.response.accessible_name(name).on_hover_text(help);
+    *value != before
 }
 
 /// Whether something was double-clicked, which takes it back to what it was.

@@ -1,10 +1,10 @@
 //! How the picture is brought to the screen. Nothing here changes the render.
 
-use egui::{ComboBox, Ui};
+use egui::Ui;
 
 use super::{Panel, section};
 use crate::app::commands::Command;
-use crate::app::widgets::{Number, key_of, row, segments};
+use crate::app::widgets::{Number, key_of, list, row, segments};
 use crate::image::tone::{Channel, Tone, ToneCurve, white};
 use crate::render::Layer;
 
@@ -12,8 +12,6 @@ use crate::render::Layer;
 const STOPS: [f32; 2] = [-8.0, 8.0];
 /// Temperatures that the slider covers, in kelvin.
 const KELVIN: [f32; 2] = [1700.0, 15_000.0];
-/// Width of the list of channels, in points.
-const LIST: f32 = 120.0;
 
 const CURVES: [(ToneCurve, &str); 3] = [
     (ToneCurve::Filmic, "Rolls bright fire off through yellow to white and keeps blacks deep."),
@@ -117,14 +115,10 @@ fn layer(ui: &mut Ui, wanted: &mut Option<Layer>) {
     let help = "The picture, one part of its light, or what is known of its pixels. An EXR holds \
                 them all.";
     row(ui, "Layer", help, |ui| {
-        let name = |layer: Option<Layer>| layer.map_or("Picture", Layer::name);
-        let list = ComboBox::from_id_salt("layer").selected_text(name(*wanted)).width(LIST);
-        let list = list.show_ui(ui, |ui| {
-            for layer in std::iter::once(None).chain(Layer::ALL.map(Some)) {
-                ui.selectable_value(wanted, layer, name(layer));
-            }
-        });
-        list.response.accessible_name("Layer").on_hover_text(help);
+        let choice = |layer: Option<Layer>| (layer, layer.map_or("Picture", Layer::name), "");
+        let choices: Vec<_> =
+            std::iter::once(None).chain(Layer::ALL.map(Some)).map(choice).collect();
+        list(ui, ("Layer", help), wanted, &choices);
     });
 }
 
@@ -133,15 +127,8 @@ fn channel(ui: &mut Ui, tone: &mut Tone) -> bool {
     let help = "All of the color, one channel as gray, or how many stops each pixel is from middle \
                 gray. For display and PNG only.";
     row(ui, "Show", help, |ui| {
-        let before = tone.channel;
-        let list = ComboBox::from_id_salt("channel").selected_text(before.name()).width(LIST);
-        let list = list.show_ui(ui, |ui| {
-            for channel in Channel::ALL {
-                ui.selectable_value(&mut tone.channel, channel, channel.name());
-            }
-        });
-        list.response.accessible_name("Show").on_hover_text(help);
-        tone.channel != before
+        let choices = Channel::ALL.map(|channel| (channel, channel.name(), ""));
+        list(ui, ("Show", help), &mut tone.channel, &choices)
     })
     .inner
 }

@@ -1,9 +1,9 @@
 //! How a volume glows.
 
-use egui::{ComboBox, Ui};
+use egui::Ui;
 
 use super::explain;
-use crate::app::widgets::{Number, color_rows, key_help, row, segments, strength, tint};
+use crate::app::widgets::{Number, color_rows, key_help, list, row, segments, strength, tint};
 use crate::scene::settings::{Color, EmissionMode, EmissionSettings, Normalize, VolumeSettings};
 use crate::scene::{GridDescription, Role, VoxelDescription};
 
@@ -15,10 +15,9 @@ pub fn show(
     ui: &mut Ui,
     volume: &mut VolumeSettings,
     opened: &VolumeSettings,
-    index: usize,
     grids: &[GridDescription],
 ) -> Option<&'static str> {
-    let edit = emission_mode(ui, volume, index, grids);
+    let edit = emission_mode(ui, volume, grids);
     let grid = volume.emission_grid().map(str::to_owned);
     if let Some(grid) = grid.as_ref().filter(|_| !grids.is_empty()) {
         let help = key_help("volume.N.emission.grid");
@@ -52,25 +51,16 @@ const MODES: [(EmissionMode, &str, &str); 6] = [
 fn emission_mode(
     ui: &mut Ui,
     volume: &mut VolumeSettings,
-    index: usize,
     grids: &[GridDescription],
 ) -> Option<&'static str> {
     let help = key_help("volume.N.emission.mode");
     let mode = volume.emission.mode;
-    let present = MODES.iter().find(|(other, ..)| *other == mode).map_or("", |(_, name, _)| name);
     row(ui, "Emission", &help, |ui| {
-        let mut changed = None;
-        let combo = ComboBox::from_id_salt(("emission mode", index)).width(120.0);
-        let response = combo.selected_text(present).show_ui(ui, |ui| {
-            for (other, name, help) in MODES {
-                if ui.selectable_label(other == mode, name).on_hover_text(help).clicked() {
-                    set_mode(volume, other, grids);
-                    changed = Some("emission mode");
-                }
-            }
-        });
-        response.response.accessible_name("Emission mode").on_hover_text(&help);
-        changed
+        let mut chosen = mode;
+        list(ui, ("Emission mode", &help), &mut chosen, &MODES).then(|| {
+            set_mode(volume, chosen, grids);
+            "emission mode"
+        })
     })
     .inner
 }
@@ -124,7 +114,7 @@ fn ramp(
 fn times_density(ui: &mut Ui, emission: &mut EmissionSettings) -> Option<&'static str> {
     let mut on = emission.times_density();
     let help = key_help("volume.N.emission.times_density");
-    ui.checkbox(&mut on, "Times density").on_hover_text(help).changed().then(|| {
+    ui.checkbox(&mut on, "Scaled by density").on_hover_text(help).changed().then(|| {
         emission.times_density = Some(on);
         "glow times density"
     })

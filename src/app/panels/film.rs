@@ -19,7 +19,7 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>, window: Option<UVec2>, largest: 
         let document = &mut panel.editor.document;
         let mut edit = None;
         let choices = [
-            ("Window's own", "The film always fills the window."),
+            ("Window size", "The film always fills the window."),
             ("Fixed", "The film keeps the size given here, as a render on the farm would."),
         ];
         let chosen = usize::from(document.keep_size);

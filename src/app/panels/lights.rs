@@ -100,8 +100,8 @@ fn item(ui: &mut Ui, lights: &[LightSettings], index: usize, selected: &mut Opti
     let Some(light) = lights.get(index) else { return };
     let is_selected = *selected == Some(index);
     let name = format!("{} {}", name_of(light.kind), index + 1);
-    let bright = format!("{} {}", significant(strength(light.intensity).into()), unit(light.kind));
-    let bright = RichText::new(bright).small().color(color::TEXT_DIM);
+    let tint = if is_selected { color::TEXT_STRONG } else { color::TEXT_DIM };
+    let bright = RichText::new(brightness(light)).small().color(tint);
     let button = Button::selectable(is_selected, &*name).right_text(bright);
     let response = ui.add(button.min_size(vec2(ui.available_width(), 0.0)));
     let help = "Show the keys of this light, and handles over the picture that move it.";
@@ -139,12 +139,13 @@ fn name_of(kind: LightKind) -> &'static str {
     KINDS.iter().find(|(other, ..)| *other == kind).map_or("Light", |(_, name, _)| name)
 }
 
-/// The unit of how bright it is.
-fn unit(kind: LightKind) -> &'static str {
-    match kind {
-        LightKind::Sun => "irradiance",
-        LightKind::Point | LightKind::Spot => "W/sr",
-        LightKind::Sphere | LightKind::Quad => "radiance",
+/// How bright it is.
+fn brightness(light: &LightSettings) -> String {
+    let number = significant(strength(light.intensity).into());
+    match light.kind {
+        LightKind::Sun => format!("irradiance {number}"),
+        LightKind::Point | LightKind::Spot => format!("{number} W/sr"),
+        LightKind::Sphere | LightKind::Quad => format!("radiance {number}"),
     }
 }
 

@@ -83,6 +83,7 @@ fn fields(ui: &mut Ui, area: Area, size: UVec2) -> Option<Area> {
         let field = ui.add_sized([FIELD, space::ROW_HEIGHT], field).accessible_name(name);
         changed |= field.on_hover_text(help).changed();
     }
+    ui.label(RichText::new("pixels").color(color::TEXT_DIM));
     let [x, y, width, height] = numbers;
     let area = Area { first: UVec2::new(x, y), size: UVec2::new(width, height) };
     changed.then_some(area)

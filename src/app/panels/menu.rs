@@ -10,11 +10,12 @@ const OPEN: [Command; 2] = [Command::Open, Command::OpenPath];
 const FILE: [&[Command]; 2] =
     [&[Command::SaveExr, Command::SavePng, Command::SaveScene], &[Command::Quit]];
 const RENDER: [&[Command]; 1] = [&[Command::PauseResume, Command::Restart]];
-const VIEW: [&[Command]; 4] = [
-    &[Command::FrameVolume, Command::FitPicture, Command::ZoomToPixels],
+const VIEW: [&[Command]; 5] = [
+    &[Command::FrameVolume, Command::FitPicture, Command::ZoomToPixels, Command::GoToPicture],
     &[Command::AutoExposure, Command::ExposureUp, Command::ExposureDown],
     &[Command::NextToneCurve, Command::FalseColor],
-    &[Command::FoldPanels, Command::FullScreen],
+    &[Command::FoldPanels, Command::FullScreen, Command::ResetWindow],
+    &[Command::Larger, Command::Smaller, Command::NormalSize],
 ];
 const COMPARE: [&[Command]; 5] = [
     &[Command::Compare, Command::NextLayout, Command::SaveComparison],

@@ -63,7 +63,7 @@ impl Palette {
         let found = found(&self.text);
         self.chosen = self.chosen.saturating_add_signed(moved).min(found.len().saturating_sub(1));
         if found.is_empty() {
-            ui.label(RichText::new("No command is called so.").color(color::TEXT_DIM));
+            ui.label(RichText::new("No command has these letters.").color(color::TEXT_DIM));
         }
         let mut clicked = None;
         ScrollArea::vertical().max_height(SIZE.y).auto_shrink([false, true]).show(ui, |ui| {

@@ -119,8 +119,8 @@ fn head(ui: &mut Ui, again: &mut bool, choice: &mut Option<Choice>) {
             ui.checkbox(again, "Show at start")
                 .on_hover_text("Show this row whenever Flambeau starts without a file.");
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                let text = "Drag the picture to orbit, drop a .vdb on it to see that. 1 to 5 switch \
-                            the strategies, C compares two, F1 shows every key.";
+                let text = "Drag the picture to orbit, drop a .vdb to open it. 1 to 5 switch \
+                            strategies, C compares two, F1 shows the keys.";
                 ui.add(Label::new(RichText::new(text).color(color::TEXT_DIM)).truncate());
             });
         });

@@ -209,7 +209,7 @@ fn place(
     };
     if surface.shape == SurfaceShape::Plane {
         let (point, normal) = (surface.point(), surface.normal());
-        let row_point = ("Point", "surface.N.point", speed);
+        let row_point = ("Position", "surface.N.point", speed);
         row(&mut surface.point, point, row_point, reset.point());
         row(&mut surface.normal, normal, ("Normal", "surface.N.normal", 0.01), reset.normal());
     } else {
@@ -270,7 +270,7 @@ fn square(ui: &mut Ui, surface: &mut SurfaceSettings, reset: &SurfaceSettings, s
     let key = "surface.N.half_size";
     let mut changed = false;
     let mut ends = surface.half_size.is_some();
-    if ui.checkbox(&mut ends, "Ends").on_hover_text(key_help(key)).changed() {
+    if ui.checkbox(&mut ends, "Limited").on_hover_text(key_help(key)).changed() {
         surface.half_size = ends.then_some(Extent::Uniform(20.0 * size.max(1e-3)));
         changed = true;
     }

@@ -1,8 +1,9 @@
 //! The volumes: what their files hold, what was guessed of it, and how they look.
 
-use egui::{CollapsingHeader, RichText, Ui};
+use egui::accesskit::Role;
+use egui::{CollapsingHeader, RichText, Ui, WidgetInfo};
 
-use super::{Panel, chooser, emission, explain, grids, placement, section};
+use super::{Panel, chooser, emission, grids, placement, section};
 use crate::app::state::Document;
 use crate::app::theme::color;
 use crate::app::up_axis;
@@ -43,13 +44,21 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
     });
 }
 
-/// What was guessed and still stands.
+/// What was guessed, struck out where it does not stand any more: what is below stays where it is.
 fn notes(ui: &mut Ui, panel: &Panel<'_>) {
     let volumes = |document: &Document| document.settings.volume.first().cloned();
     let present = volumes(&panel.editor.document).zip(volumes(panel.editor.opened()));
     let Some((volume, opened)) = present else { return };
-    for note in panel.notes.iter().filter(|note| stands(note, &volume, &opened)) {
-        explain(ui, &capitalized(&note.to_string()));
+    for note in panel.notes {
+        let text = RichText::new(capitalized(&note.to_string())).small().color(color::TEXT_DIM);
+        let is_so = stands(note, &volume, &opened);
+        let text = if is_so { text } else { text.strikethrough() };
+        let label = ui.add(egui::Label::new(text).wrap());
+        if !is_so {
+            let told = format!("Changed since: {note}");
+            label.widget_info(|| WidgetInfo::labeled(Role::Label, true, &told));
+            label.on_hover_text("Changed since.");
+        }
     }
 }
 
@@ -158,7 +167,7 @@ fn one(ui: &mut Ui, panel: &mut Panel<'_>, index: usize) {
     let volume = &mut settings.volume[index];
     edit = edit.or(grids::show(ui, volume, &opened, grids, panel.notes));
     edit = edit.or(medium(ui, volume, &opened));
-    edit = edit.or(emission::show(ui, volume, &opened, index, grids));
+    edit = edit.or(emission::show(ui, volume, &opened, grids));
     edit = edit.or(placement::shape(ui, volume, &opened));
     let place = CollapsingHeader::new("Placement").id_salt(("placement", index));
     let moved = place.show(ui, |ui| placement::show(ui, volume, &opened, size)).body_returned;
