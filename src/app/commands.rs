@@ -33,8 +33,13 @@ pub enum Command {
     AutoExposure,
     NextToneCurve,
     FalseColor,
+    GoToPicture,
     FoldPanels,
     FullScreen,
+    Larger,
+    Smaller,
+    NormalSize,
+    ResetWindow,
     Palette,
     /// Show what to begin with.
     Start,
@@ -69,7 +74,7 @@ use Command as C;
 
 impl Command {
     /// All of them, in the order of the help page.
-    pub const ALL: [Self; 50] = [
+    pub const ALL: [Self; 55] = [
         C::Open,
         C::OpenPath,
         C::SaveExr,
@@ -93,8 +98,13 @@ impl Command {
         C::AutoExposure,
         C::NextToneCurve,
         C::FalseColor,
+        C::GoToPicture,
         C::FoldPanels,
         C::FullScreen,
+        C::Larger,
+        C::Smaller,
+        C::NormalSize,
+        C::ResetWindow,
         C::Palette,
         C::Start,
         C::Shortcuts,
@@ -148,8 +158,13 @@ impl Command {
             C::AutoExposure => "Expose for the picture",
             C::NextToneCurve => "Next tone curve",
             C::FalseColor => "False color",
+            C::GoToPicture => "Go to the picture",
             C::FoldPanels => "Fold the panels",
             C::FullScreen => "Picture on the full screen",
+            C::Larger => "Larger text",
+            C::Smaller => "Smaller text",
+            C::NormalSize => "Text of normal size",
+            C::ResetWindow => "Reset the window",
             C::Palette => "All commands…",
             C::Start => "Start with a scene",
             C::Shortcuts => "Keys and mouse",
@@ -213,9 +228,20 @@ impl Command {
             }
             C::NextToneCurve => "Go from one tone curve to the next: filmic, AgX, linear.",
             C::FalseColor => "Show how many stops each pixel is from middle gray, or the picture.",
+            C::GoToPicture => {
+                "Give the picture the keyboard: arrows orbit, with Shift they pan, Page Up and Page \
+                 Down move in and out."
+            }
             C::FoldPanels => "Hide the panels and give the picture the room, or bring them back.",
             C::FullScreen => {
                 "Give the picture the whole screen, without menus and panels, or bring them back."
+            }
+            C::Larger => "Make text and controls larger; the picture keeps its pixels.",
+            C::Smaller => "Make text and controls smaller; the picture keeps its pixels.",
+            C::NormalSize => "Give text and controls the size that the screen asks for.",
+            C::ResetWindow => {
+                "Bring panels, text size and display back to what they were at the first start. Scene, \
+                 strategy, snapshots and the files of before stay."
             }
             C::Start => "Show the scenes that Flambeau brings along and the files of before.",
             C::Palette => "Find a command by a few letters of its name and carry it out.",
@@ -267,7 +293,9 @@ impl Command {
             }
             C::PreviousSnapshot => "Show the snapshot before, in place of the live picture.",
             C::NextSnapshot => "Show the snapshot after, or the live picture behind the last.",
-            C::LivePicture => "Show the picture that is being rendered again.",
+            C::LivePicture => {
+                "Close what is in front, or show the picture that is being rendered again."
+            }
             C::ContinueSnapshot => "Open the scene of the snapshot shown and add samples to it.",
             C::DeleteSnapshot => {
                 "Delete the snapshot shown. It can be undone until the program ends."
@@ -303,8 +331,13 @@ impl Command {
             C::AutoExposure => (Modifiers::NONE, Key::A),
             C::NextToneCurve => (Modifiers::NONE, Key::T),
             C::FalseColor => (Modifiers::SHIFT, Key::T),
+            C::GoToPicture => (Modifiers::NONE, Key::F6),
             C::FoldPanels => (Modifiers::NONE, Key::N),
             C::FullScreen => (Modifiers::NONE, Key::F11),
+            C::Larger => (Modifiers::COMMAND, Key::Plus),
+            C::Smaller => (Modifiers::COMMAND, Key::Minus),
+            C::NormalSize => (Modifiers::COMMAND, Key::Num0),
+            C::ResetWindow => (Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Num0),
             C::Palette => (Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::P),
             C::Start => (Modifiers::SHIFT, Key::F1),
             C::Shortcuts => (Modifiers::NONE, Key::F1),

@@ -128,6 +128,21 @@ fn layers_take_the_place_of_the_picture() {
     assert_shown(&mut window, &pixels, Tone::default());
 }
 
+#[test]
+fn a_list_closes_with_the_key_that_chooses() {
+    let Some(mut window) = open() else { return };
+    window.harness.get_by_role_and_label(Role::ComboBox, "Layer").focus();
+    window.settle();
+    window.press(Modifiers::NONE, Key::Enter);
+    window.harness.get_by_role_and_label(Role::Button, Layer::Depth.name()).focus();
+    window.settle();
+    window.press(Modifiers::NONE, Key::Enter);
+    window.until("the layer is there", |app| {
+        app.engine().picture().is_some_and(|picture| picture.layer.layer == Some(Layer::Depth))
+    });
+    assert!(window.harness.query_by_role_and_label(Role::Button, Layer::Noise.name()).is_none());
+}
+
 /// Only a texel a block is brought onto the graphics card.
 #[test]
 fn a_coarse_picture_shows_its_blocks() {

@@ -4,7 +4,8 @@
 use egui::accesskit::Role;
 use egui::{Key, Modifiers, ViewportCommand, ViewportEvent, ViewportId};
 use egui_kittest::kittest::Queryable;
-use flambeau::image::tone::{Channel, ToneCurve};
+use flambeau::app::{App, Level};
+use flambeau::image::tone::{Channel, Tone, ToneCurve};
 
 use super::{BALL, Window};
 
@@ -32,6 +33,14 @@ impl Window {
         self.type_path(other.to_str().unwrap());
         self.settle();
         other.to_string_lossy().into_owned()
+    }
+
+    fn has_lights_open(&self) -> bool {
+        self.has("Add sun")
+    }
+
+    fn has_camera_open(&self) -> bool {
+        self.harness.query_by_role_and_label(Role::SpinButton, "Angle of view").is_some()
     }
 
     fn until_volume_is(&mut self, name: &str) {
@@ -68,6 +77,43 @@ fn changes_are_asked_about_before_another_scene_opens() {
     window.click(Role::Button, "Open without saving");
     window.until_volume_is("other");
     assert!(!window.app().has_unsaved_changes());
+}
+
+#[test]
+fn the_question_takes_the_keyboard_and_escape_is_an_answer() {
+    let Some(mut window) = Window::open(BALL) else { return };
+    window.change();
+    window.press(Modifiers::COMMAND, Key::L);
+    window.type_path("/nowhere/nothing.toml");
+    window.until("the failure is told", |app| !app.notices().list().is_empty());
+    assert!(!window.has("not saved"), "what is not there cannot take the place of anything");
+    window.press(Modifiers::NONE, Key::F1);
+    window.ask_for_other();
+    assert!(window.has("not saved"));
+    assert!(window.harness.get_by_role_and_label(Role::Button, "Save scene…").is_focused());
+    window.press(Modifiers::NONE, Key::Escape);
+    assert!(window.has("not saved") && !window.has("Orbit around the target"), "the front first");
+    window.press(Modifiers::NONE, Key::Escape);
+    assert!(!window.has("not saved") && window.document().settings.volume[0].name == "ball");
+}
+
+/// Whatever control the keyboard goes to, it is in sight.
+#[test]
+fn what_the_keyboard_goes_to_is_in_sight() {
+    let Some(mut window) = Window::open(BALL) else { return };
+    let (mut seen, screen) = (0, window.harness.ctx.content_rect());
+    for _ in 0..60 {
+        window.press(Modifiers::NONE, Key::Tab);
+        let focused = window.harness.ctx.memory(|memory| memory.focused());
+        let control = focused.and_then(|id| window.harness.ctx.read_response(id));
+        if let Some(control) = control {
+            assert!(screen.contains_rect(control.rect), "{:?}", control.rect);
+            seen += 1;
+        }
+    }
+    assert!(seen > 40, "{seen}");
+    window.press(Modifiers::NONE, Key::F6);
+    assert!(window.harness.get_by_role_and_label(Role::Image, "Picture").is_focused());
 }
 
 #[test]
@@ -109,17 +155,60 @@ fn display_layout_and_files_are_there_again_after_a_restart() {
     window.press(Modifiers::NONE, Key::T);
     window.press(Modifiers::NONE, Key::E);
     window.press(Modifiers::NONE, Key::Num4);
+    window.click(Role::DisclosureTriangle, "Lights");
+    window.click(Role::DisclosureTriangle, "Camera");
+    window.press(Modifiers::COMMAND, Key::Plus);
+    let scale = window.harness.ctx.zoom_factor();
     window.press(Modifiers::NONE, Key::N);
     let mut window = window.restart(&scene);
+    assert!(scale > 1.0 && window.harness.ctx.zoom_factor() == scale);
     let tone = window.document().tone;
     assert_eq!((tone.curve, tone.exposure), (ToneCurve::Agx, 0.5));
     assert!(window.document().settings.strategy.nee, "strategies are never remembered");
     assert!(window.harness.query_by_role_and_label(Role::Button, "Full").is_none(), "still folded");
+    window.press(Modifiers::NONE, Key::N);
+    assert!(window.has_lights_open() && !window.has_camera_open());
     window.click(Role::Button, "File");
     window.click(Role::Button, "Open recent");
     window.click(Role::Button, "other.toml");
     window.until_volume_is("other");
     assert!(other.ends_with("other.toml"));
+}
+
+#[test]
+fn a_reset_brings_window_and_display_back_and_nothing_else() {
+    let Some(mut window) = Window::open(BALL) else { return };
+    let scale = window.harness.ctx.zoom_factor();
+    window.press(Modifiers::COMMAND, Key::Minus);
+    window.press(Modifiers::NONE, Key::E);
+    window.press(Modifiers::NONE, Key::Num4);
+    window.click(Role::DisclosureTriangle, "Lights");
+    window.click(Role::DisclosureTriangle, "Camera");
+    assert!(window.has_lights_open() && !window.has_camera_open());
+    window.press(Modifiers::NONE, Key::N);
+    window.press(PALETTE, Key::Num0);
+    assert_eq!(window.harness.ctx.zoom_factor(), scale);
+    assert_eq!(window.document().tone, Tone::default());
+    assert!(!window.document().settings.strategy.nee, "no strategy is touched");
+    assert!(!window.has_lights_open() && window.has_camera_open());
+    window.press(Modifiers::COMMAND, Key::Z);
+    assert_eq!(window.document().tone.exposure, 0.5, "it can be taken back");
+    let scene = window.folder.path().join("scene.toml");
+    let window = window.restart(&scene);
+    assert!(!window.has_lights_open() && window.has_camera_open(), "nothing of it is remembered");
+}
+
+#[test]
+fn what_went_well_leaves_by_itself_and_failures_stay() {
+    let Some(mut window) = Window::open(BALL) else { return };
+    window.until_finished();
+    window.press(Modifiers::COMMAND, Key::L);
+    window.type_path("/nowhere/nothing.toml");
+    window.until("the failure is told", |app| !app.notices().list().is_empty());
+    window.save(Modifiers::COMMAND, "ball.exr");
+    let levels = |app: &App| app.notices().list().iter().map(|n| n.level).collect::<Vec<_>>();
+    assert_eq!(levels(window.app()), [Level::Failed, Level::Done]);
+    window.until("it has left", |app| levels(app) == [Level::Failed]);
 }
 
 #[test]

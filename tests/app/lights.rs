@@ -60,6 +60,28 @@ fn lights_are_added_duplicated_and_deleted_and_undo_takes_it_back() {
 }
 
 #[test]
+fn handles_go_away_with_escape_and_with_a_click_beside_them() {
+    let Some(mut window) = with_light("Add point") else { return };
+    let has_handles = |window: &Window| window.harness.query_by_label("Move light").is_some();
+    assert!(has_handles(&window));
+    window.press(Modifiers::NONE, Key::F11);
+    assert!(!has_handles(&window), "nothing but the picture on the full screen");
+    window.press(Modifiers::NONE, Key::Escape);
+    assert!(has_handles(&window));
+    window.press(Modifiers::NONE, Key::Escape);
+    assert!(!has_handles(&window));
+    window.click(Role::Button, "Point 1");
+    assert!(has_handles(&window));
+    let picture = window.harness.get_by_role_and_label(Role::Image, "Picture").rect();
+    let beside = picture.left_top() + egui::vec2(8.0, 8.0);
+    window.harness.drag_at(beside);
+    window.harness.drop_at(beside);
+    window.settle();
+    assert!(!has_handles(&window));
+    assert_eq!(lights(&window).len(), 1);
+}
+
+#[test]
 fn every_kind_of_light_can_be_built_and_changed_into_every_other() {
     let Some(mut window) = with_light("Add spot") else { return };
     let stood = lights(&window)[0].position;

@@ -342,7 +342,7 @@ fn a_snapshot_is_one_side_against_the_live_picture() {
 fn a_snapshot_of_another_size_offers_its_size() {
     let Some(mut window) = open() else { return };
     window.keep("scene full");
-    window.click(Role::Button, "Window's own");
+    window.click(Role::Button, "Window size");
     window.until("the film is that of the window", |app| {
         app.engine().picture().is_some_and(|picture| picture.size.x > 400)
     });

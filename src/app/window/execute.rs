@@ -35,6 +35,7 @@ impl App {
                 let size = self.shown_picture().map(|picture| picture.size);
                 self.viewport.toggle_pixel_zoom(size);
             }
+            Command::GoToPicture => self.viewport.wants_keyboard = true,
             Command::AutoExposure => self.expose(),
             Command::FullScreen => self.set_full_screen(ctx, !self.full_screen),
             Command::Start => {
@@ -50,6 +51,10 @@ impl App {
                     None => Some(Palette::default()),
                 };
             }
+            Command::Larger => egui::gui_zoom::zoom_in(ctx),
+            Command::Smaller => egui::gui_zoom::zoom_out(ctx),
+            Command::NormalSize => ctx.set_zoom_factor(1.0),
+            Command::ResetWindow => self.reset_window(ctx),
             Command::Sweep => self.sweep.ask(&self.editor.document.settings),
             Command::Shortcuts => self.help = !self.help,
             _ if self.execute_stored(ctx, command) || self.execute_measure(ctx, command) => {}
@@ -62,6 +67,39 @@ impl App {
     pub(super) fn set_full_screen(&mut self, ctx: &Context, full: bool) {
         self.full_screen = full;
         ctx.send_viewport_cmd(egui::ViewportCommand::Fullscreen(full));
+    }
+
+    /// Closes or takes back what is there beside the live picture, the front one first.
+    pub(super) fn leave(&mut self, ctx: &Context) {
+        if self.help {
+            self.help = false;
+        } else if self.kept.losing.is_some() {
+            self.stay();
+        } else if self.sweep.open && self.sweep.results().is_some() {
+            self.sweep.open = false;
+        } else if self.rectangle.is_armed() {
+            self.rectangle.remove();
+        } else if self.full_screen {
+            self.set_full_screen(ctx, false);
+        } else if self.snapshots.strip.shown().is_some() {
+            self.snapshots.strip.show(None);
+        } else if !self.rectangle.remove() && self.gizmo.selected.take().is_none() {
+            self.start = None;
+        }
+    }
+
+    /// Brings what is remembered of the window and the display back to the first start, and what
+    /// hides parts of it.
+    fn reset_window(&mut self, ctx: &Context) {
+        ctx.set_zoom_factor(1.0);
+        self.set_full_screen(ctx, false);
+        self.folded = false;
+        self.sections.reset();
+        self.remembered.start = true;
+        self.viewport.zoom = Default::default();
+        self.duel.layout = Default::default();
+        self.editor.document.tone = Default::default();
+        self.editor.name_edit("display");
     }
 
     /// Commands that change the document.

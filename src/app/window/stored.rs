@@ -79,18 +79,7 @@ impl App {
             Command::NextSnapshot => self.snapshots.strip.show_next(),
             // The key also closes what is open in front.
             Command::LivePicture if ctx.any_popup_open() => {}
-            Command::LivePicture if self.rectangle.is_armed() => {
-                self.rectangle.remove();
-            }
-            Command::LivePicture if self.full_screen => self.set_full_screen(ctx, false),
-            Command::LivePicture if self.snapshots.strip.shown().is_some() => {
-                self.snapshots.strip.show(None);
-            }
-            Command::LivePicture => {
-                if !self.rectangle.remove() {
-                    self.start = None;
-                }
-            }
+            Command::LivePicture => self.leave(ctx),
             Command::CompareAsA => self.set_against_live(Side::A),
             Command::CompareAsB => self.set_against_live(Side::B),
             Command::Compare if self.versus.is_some() => self.snapshots.strip.show(None),
