@@ -36,6 +36,7 @@ fn a_wrong_guess_is_one_click_to_mend() {
     assert_eq!(volume(&window).emission.mode, EmissionMode::Blackbody);
     assert!(window.has("Guessed: \"temperature\" is a temperature"));
     assert_eq!(window.harness.query_all_by_label("guess").count(), 3, "two grids and the up axis");
+    assert_eq!(window.harness.query_all_by_label("not used").count(), 1, "one of three grids");
 
     window.click(Role::Button, "flame as flame");
     assert_eq!(volume(&window).emission.mode, EmissionMode::Ramp);

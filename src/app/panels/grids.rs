@@ -148,6 +148,11 @@ fn roles<'n>(
             let text = RichText::new("guess").small().italics().color(color::WARNING);
             ui.label(text).on_hover_text(help);
         }
+        if !Role::ALL.into_iter().any(|role| role.is_of(volume, &grid.name)) {
+            ui.add_space(space::TIGHT);
+            let help = "Nothing is read from this grid. A click on a button says what it is for.";
+            ui.label(RichText::new("not used").small().color(color::TEXT_DIM)).on_hover_text(help);
+        }
     });
     clicked
 }
