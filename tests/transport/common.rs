@@ -88,11 +88,6 @@ pub fn half_of_strategies() -> Vec<Strategy> {
     (0..32_u32).filter(|bits| bits.count_ones() % 2 == 1).map(toggles).collect()
 }
 
-/// The other half, of which the same holds.
-pub fn other_half_of_strategies() -> Vec<Strategy> {
-    (0..32_u32).filter(|bits| bits.count_ones() % 2 == 0).map(toggles).collect()
-}
-
 fn toggles(bits: u32) -> Strategy {
     let scatter_probability =
         if bits & 1 != 0 { ScatterProbability::Light } else { ScatterProbability::Even };
