@@ -223,25 +223,17 @@ impl Command {
             C::ZoomToPixels => "Zoom in until single pixels show, and back.",
             C::ExposureUp => "Brighten the display by half a stop.",
             C::ExposureDown => "Darken the display by half a stop.",
-            C::AutoExposure => {
-                "Set the exposure so that the brightest parts of the picture just keep their color."
-            }
+            C::AutoExposure => "Expose so that the brightest parts just keep their color.",
             C::NextToneCurve => "Go from one tone curve to the next: filmic, AgX, linear.",
             C::FalseColor => "Show how many stops each pixel is from middle gray, or the picture.",
-            C::GoToPicture => {
-                "Give the picture the keyboard: arrows orbit, with Shift they pan, Page Up and Page \
-                 Down move in and out."
-            }
+            C::GoToPicture => "Give the picture the keyboard: arrows orbit, with Shift they pan.",
             C::FoldPanels => "Hide the panels and give the picture the room, or bring them back.",
-            C::FullScreen => {
-                "Give the picture the whole screen, without menus and panels, or bring them back."
-            }
+            C::FullScreen => "Give the picture the whole screen, or bring menus and panels back.",
             C::Larger => "Make text and controls larger; the picture keeps its pixels.",
             C::Smaller => "Make text and controls smaller; the picture keeps its pixels.",
             C::NormalSize => "Give text and controls the size that the screen asks for.",
             C::ResetWindow => {
-                "Bring panels, text size and display back to what they were at the first start. Scene, \
-                 strategy, snapshots and the files of before stay."
+                "Bring panels, text size and display back to the first start; all else stays."
             }
             C::Start => "Show the scenes that Flambeau brings along and the files of before.",
             C::Palette => "Find a command by a few letters of its name and carry it out.",
@@ -293,9 +285,7 @@ impl Command {
             }
             C::PreviousSnapshot => "Show the snapshot before, in place of the live picture.",
             C::NextSnapshot => "Show the snapshot after, or the live picture behind the last.",
-            C::LivePicture => {
-                "Close what is in front, or show the picture that is being rendered again."
-            }
+            C::LivePicture => "Close what is in front, or show the picture being rendered again.",
             C::ContinueSnapshot => "Open the scene of the snapshot shown and add samples to it.",
             C::DeleteSnapshot => {
                 "Delete the snapshot shown. It can be undone until the program ends."

@@ -99,7 +99,6 @@ impl App {
                 .frame(theme::panel_frame())
                 .show(ui, |ui| self.notices.show(ui));
         }
-        let has_picture = self.shown_picture().is_some();
         let shown = self.shown(ui.ctx());
         let is_live = self.snapshots.picture().is_none() || self.versus.is_some();
         let is_plain = self.map().is_none();
@@ -110,10 +109,12 @@ impl App {
                 let views = self.viewport.show(ui, &mut self.editor, &shown, &mut self.rectangle);
                 let first = views.first().copied();
                 // What is drawn over the picture is about the live one.
-                if let (true, Some(view), true) = (is_live, first, has_picture) {
-                    self.diagnostics.show(ui, view, &self.editor.document.settings, legend);
-                } else if let (Some(view), Some(legend)) = (first, legend) {
-                    show_legends(ui, view.rect, &[legend]);
+                match (first, legend) {
+                    (Some(view), legend) if is_live => {
+                        self.diagnostics.show(ui, view, &self.editor.document.settings, legend);
+                    }
+                    (Some(view), Some(legend)) => show_legends(ui, view.rect, &[legend]),
+                    _ => {}
                 }
                 views.iter().for_each(|view| self.rectangle.paint(ui, view));
                 if is_live {
