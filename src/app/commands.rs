@@ -376,6 +376,8 @@ impl Command {
                 .filter(|command| {
                     let shortcut = command.shortcut();
                     let taken = match shortcut.logical_key {
+                        // No text has these.
+                        Key::F1 | Key::F6 | Key::F11 => false,
                         Key::Space | Key::ArrowLeft | Key::ArrowRight | Key::Delete => focused,
                         _ => typing,
                     };

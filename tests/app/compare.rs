@@ -65,6 +65,8 @@ fn a_key_sets_the_strategy_against_the_baseline_and_tells_how_much_it_brings() {
 fn toggles_act_on_the_edited_side() {
     let Some(mut window) = open() else { return };
     window.press(Modifiers::NONE, Key::C);
+    // The panel is at rest once the figures are in it.
+    window.until_compared();
     let strategy = |window: &Window, side| window.document().strategy_of(side);
     window.press(Modifiers::NONE, Key::Num4);
     assert!(!strategy(&window, Side::B).nee && window.has("B  Custom"));
@@ -123,19 +125,19 @@ fn layers_are_compared_and_maps_go_before_them() {
 /// What comes and goes above it pushes nothing from under the pointer.
 #[test]
 fn the_panel_stays_where_the_hand_is() {
-    let Some(mut window) = open() else { return };
-    let row = |window: &Window| {
-        window.harness.get_by_role_and_label(Role::SpinButton, "Angle of view").rect()
-    };
-    window.harness.get_by_role_and_label(Role::SpinButton, "Angle of view").scroll_to_me();
-    window.settle();
-    let before = row(&window);
-    window.harness.hover_at(before.center());
-    window.press(Modifiers::NONE, Key::C);
-    window.until_compared();
-    assert!((row(&window).center() - before.center()).length() < 1.0, "{:?}", row(&window));
-    window.press(Modifiers::NONE, Key::C);
-    assert!((row(&window).center() - before.center()).length() < 1.0, "{:?}", row(&window));
+    for (role, name) in [(Role::SpinButton, "Angle of view"), (Role::CheckBox, "Majorant boost")] {
+        let Some(mut window) = open() else { return };
+        let at = |window: &Window| window.harness.get_by_role_and_label(role, name).rect().center();
+        window.harness.get_by_role_and_label(role, name).scroll_to_me();
+        window.settle();
+        let before = at(&window);
+        window.harness.hover_at(before);
+        window.press(Modifiers::NONE, Key::C);
+        window.until_compared();
+        assert!(at(&window).distance(before) < 1.0, "{name}: {before} to {}", at(&window));
+        window.press(Modifiers::NONE, Key::C);
+        assert!(at(&window).distance(before) < 1.0, "{name}: {before} to {}", at(&window));
+    }
 }
 
 /// Camera edits go to both sides, which take turns until both have the samples.

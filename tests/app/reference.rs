@@ -371,6 +371,8 @@ fn a_path_that_is_not_wanted_leaves_the_rectangle() {
 fn a_biased_side_is_labeled_whichever_is_edited() {
     let Some(mut window) = open() else { return };
     window.press(Modifiers::NONE, Key::C);
+    // The panel is at rest once the figures are in it.
+    window.until_compared();
     // In the panel and in the status line.
     let says = |window: &Window, text: &str| window.harness.query_all_by_label(text).count() == 2;
     window.press(Modifiers::NONE, Key::B);

@@ -23,9 +23,10 @@ pub fn show(
         let room = ui.max_rect();
         let mut ui = ui.new_child(UiBuilder::new().max_rect(room));
         ui.shrink_clip_rect(room);
-        let before = sections.tops();
+        let (before, was) = (sections.tops(), sections.top());
         let mut area = ScrollArea::vertical().auto_shrink(false);
-        if let Some(offset) = sections.take_offset() {
+        let held_at = sections.take_offset();
+        if let Some(offset) = held_at {
             area = area.vertical_scroll_offset(offset);
         }
         let output = area.show(&mut ui, |ui| {
@@ -44,7 +45,11 @@ pub fn show(
             follow_keyboard(ui);
         });
         let offset = output.inner_rect.top() - sections.top();
-        if let Some(offset) = held(&ui, (output.inner_rect, offset), &before, &sections.tops()) {
+        // What somebody is scrolling goes where it is scrolled to.
+        let is_still = held_at.is_some() || (sections.top() - was).abs() < 0.5;
+        if let Some(offset) = held(&ui, (output.inner_rect, offset), &before, &sections.tops())
+            && is_still
+        {
             sections.scroll(offset);
             ui.ctx().request_discard("the column stays where the hand is");
         }

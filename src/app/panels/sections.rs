@@ -86,6 +86,12 @@ impl Sections {
         self.with(|chosen| chosen.offset.take())
     }
 
+    /// Notes that something begins here which is to stay where the hand is.
+    fn mark(&self, ui: &Ui, name: &'static str) {
+        let top = ui.cursor().top();
+        self.with(|chosen| chosen.tops.push((name, top - chosen.top)));
+    }
+
     fn with<T>(&self, then: impl FnOnce(&mut Chosen) -> T) -> T {
         then(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }
@@ -101,13 +107,16 @@ pub fn folded_section(ui: &mut Ui, title: &'static str, contents: impl FnOnce(&m
     section_under(ui, title, false, contents);
 }
 
+/// Notes that below here, inside of a part, something begins that what is above it may push.
+pub fn mark(ui: &Ui, name: &'static str) {
+    Sections::of(ui.ctx()).mark(ui, name);
+}
+
 fn section_under(ui: &mut Ui, title: &'static str, at_first: bool, contents: impl FnOnce(&mut Ui)) {
     let sections = Sections::of(ui.ctx());
-    let top = ui.cursor().top();
-    let (was_open, is_reset) = sections.with(|chosen| {
-        chosen.tops.push((title, top - chosen.top));
-        (chosen.open.get(title).copied(), chosen.is_reset)
-    });
+    sections.mark(ui, title);
+    let (was_open, is_reset) =
+        sections.with(|chosen| (chosen.open.get(title).copied(), chosen.is_reset));
     let was_open = was_open.unwrap_or(at_first);
     let heading = RichText::new(title).heading().color(color::TEXT_STRONG);
     let header = CollapsingHeader::new(heading).default_open(was_open);

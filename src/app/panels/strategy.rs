@@ -2,6 +2,7 @@
 
 use egui::{CollapsingHeader, Layout, RichText, Ui};
 
+use super::sections::mark;
 use super::{Panel, advanced, compare, explain, section};
 use crate::app::commands::Command;
 use crate::app::theme::{color, space};
@@ -28,6 +29,7 @@ pub fn toggle_of(command: Command) -> Option<Toggle> {
 pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
     section(ui, "Strategy", |ui| {
         compare::sides(ui, panel);
+        mark(ui, "toggles");
         presets(ui, panel);
         if panel.editor.document.settings.strategy.is_biased() {
             let text = "Biased: ray marching is on (Advanced).";
@@ -39,6 +41,7 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
             row_of(ui, panel, toggle, command);
         }
         ui.add_space(space::TIGHT);
+        mark(ui, "advanced");
         CollapsingHeader::new("Advanced").id_salt("strategy advanced").show(ui, |ui| {
             advanced::show(ui, panel);
         });
