@@ -52,7 +52,7 @@ fn build(volume: &str) -> Scene {
     let text = format!("[[volume]]\n{volume}\nalbedo = 0.8");
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets");
     let settings = scene::parse(&text, "bench", &folder, &Overrides::default()).unwrap();
-    scene::build(&settings, &VolumeCache::default(), NO_PROGRESS).unwrap()
+    flambeau::scene::assemble(&settings, &VolumeCache::default(), NO_PROGRESS).unwrap()
 }
 
 /// Points in the volume's box, each with a unit direction and a length.

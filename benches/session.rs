@@ -42,7 +42,8 @@ impl Window {
     fn edit(&mut self, change: impl Fn(&mut Settings, u64)) {
         self.generation += 1;
         change(&mut self.settings, self.generation);
-        let scene = Arc::new(scene::build(&self.settings, &self.cache, NO_PROGRESS).unwrap());
+        let scene =
+            Arc::new(flambeau::scene::assemble(&self.settings, &self.cache, NO_PROGRESS).unwrap());
         self.session.start(Request {
             sampler: Arc::new(Frame::new(scene, SIZE, 0)),
             size: SIZE,

@@ -38,7 +38,7 @@ fn explosion(preset: Preset) -> Scene {
     "#;
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets");
     let settings = scene::parse(text, "bench", &folder, &Overrides::default()).unwrap();
-    let scene = scene::build(&settings, &VolumeCache::default(), NO_PROGRESS).unwrap();
+    let scene = flambeau::scene::assemble(&settings, &VolumeCache::default(), NO_PROGRESS).unwrap();
     Scene { strategy: Strategy { ..preset.strategy() }, ..scene }
 }
 

@@ -41,6 +41,7 @@ pub mod app;
 pub mod cli;
 pub mod error;
 pub mod files;
+pub mod format;
 pub mod image;
 pub mod light;
 pub mod math;

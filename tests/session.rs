@@ -175,7 +175,7 @@ fn the_reported_variance_is_that_between_seeds() {
     let (size, spp, seeds) = (UVec2::new(32, 32), 11, 24);
     let folder = std::path::Path::new("/");
     let settings = scene::parse(SCENE, "test", folder, &Default::default()).unwrap();
-    let scene = scene::build(&settings, &Default::default(), NO_PROGRESS).unwrap();
+    let scene = flambeau::scene::assemble(&settings, &Default::default(), NO_PROGRESS).unwrap();
     let scene = Arc::new(scene);
     let (mut reported, mut means) = (0.0, Vec::new());
     for seed in 0..seeds {

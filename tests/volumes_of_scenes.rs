@@ -35,7 +35,9 @@ fn of_file(file: String) -> Settings {
 }
 
 fn build_error(settings: &Settings) -> String {
-    scene::build(settings, &VolumeCache::default(), NO_PROGRESS).unwrap_err().to_string()
+    flambeau::scene::assemble(settings, &VolumeCache::default(), NO_PROGRESS)
+        .unwrap_err()
+        .to_string()
 }
 
 #[test]
@@ -45,7 +47,8 @@ fn every_shipped_scene_is_built() {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         let settings = scene::load(path.to_str().unwrap()).unwrap();
-        let built = scene::build(&settings, &VolumeCache::default(), NO_PROGRESS).unwrap();
+        let built =
+            flambeau::scene::assemble(&settings, &VolumeCache::default(), NO_PROGRESS).unwrap();
         assert_eq!(built.world.instances().len(), settings.volume.len());
         count += 1;
     }
@@ -86,7 +89,8 @@ fn guessed_volumes_stand_upright_in_the_picture() {
         let settings = opened(&file).settings;
         let is_y_up = settings.volume[0].rotate != [0.0; 3];
         assert_eq!(is_y_up, file.ends_with("smoke.vdb"), "{file}");
-        let built = scene::build(&settings, &VolumeCache::default(), NO_PROGRESS).unwrap();
+        let built =
+            flambeau::scene::assemble(&settings, &VolumeCache::default(), NO_PROGRESS).unwrap();
         let bounds = built.world.instances()[0].bounds();
         assert!(bounds.min.z > -0.5 * bounds.size().z, "{file} hangs below its ground: {bounds:?}");
         let size = glam::UVec2::new(160, 90);
@@ -182,7 +186,7 @@ fn grids_that_are_not_there_are_answered_with_those_that_are() {
 fn the_street_keeps_one_torch_for_all_of_its_torches() {
     let street =
         scene::load(&format!("{}/scenes/street.toml", env!("CARGO_MANIFEST_DIR"))).unwrap();
-    let built = scene::build(&street, &VolumeCache::default(), NO_PROGRESS).unwrap();
+    let built = flambeau::scene::assemble(&street, &VolumeCache::default(), NO_PROGRESS).unwrap();
     let files = street.volume.iter().map(|volume| volume.file.is_some());
     let torches: Vec<_> = std::iter::zip(files, built.world.instances())
         .filter_map(|(is_torch, instance)| is_torch.then_some(instance.volume()))
@@ -200,7 +204,7 @@ fn instances_of_a_file_share_its_volume() {
         settings.volume.push(copy);
     }
     settings.volume[7].density.scale = Color::Gray(9.0);
-    let built = scene::build(&settings, &VolumeCache::default(), NO_PROGRESS).unwrap();
+    let built = flambeau::scene::assemble(&settings, &VolumeCache::default(), NO_PROGRESS).unwrap();
     let instances = built.world.instances();
     let same = |i: usize| std::sync::Arc::ptr_eq(instances[0].volume(), instances[i].volume());
     assert!((1..200).all(|i| same(i) == (i != 7)));
@@ -216,36 +220,36 @@ fn an_edit_reads_no_file_again_and_a_changed_file_is_noticed() {
     let name = path.to_str().unwrap().to_owned();
     let mut settings = of_file(name.clone());
     let cache = VolumeCache::default();
-    let first = scene::build(&settings, &cache, NO_PROGRESS).unwrap();
+    let first = flambeau::scene::assemble(&settings, &cache, NO_PROGRESS).unwrap();
     let file = cache.file(&name, NO_PROGRESS).unwrap();
 
     settings.camera.fov_x = 20.0;
-    let turned = scene::build(&settings, &cache, NO_PROGRESS).unwrap();
+    let turned = flambeau::scene::assemble(&settings, &cache, NO_PROGRESS).unwrap();
     let volume = |scene: &flambeau::transport::Scene| scene.world.instances()[0].volume().clone();
     assert!(std::sync::Arc::ptr_eq(&volume(&first), &volume(&turned)), "the camera is no volume");
 
     settings.volume[0].density.scale = Color::Gray(2.0);
-    let thicker = scene::build(&settings, &cache, NO_PROGRESS).unwrap();
+    let thicker = flambeau::scene::assemble(&settings, &cache, NO_PROGRESS).unwrap();
     assert!(!std::sync::Arc::ptr_eq(&volume(&first), &volume(&thicker)));
     let same_file =
         |file: &_| std::sync::Arc::ptr_eq(file, &cache.file(&name, NO_PROGRESS).unwrap());
     assert!(same_file(&file), "an edit of numbers reads nothing");
 
     std::fs::copy(asset("torch_hd"), &path).unwrap();
-    let replaced = scene::build(&settings, &cache, NO_PROGRESS).unwrap();
+    let replaced = flambeau::scene::assemble(&settings, &cache, NO_PROGRESS).unwrap();
     assert!(!same_file(&file));
     assert_ne!(
         replaced.world.instances()[0].bounds().size(),
         thicker.world.instances()[0].bounds().size()
     );
     settings.volume.clear();
-    scene::build(&settings, &cache, NO_PROGRESS).unwrap();
+    flambeau::scene::assemble(&settings, &cache, NO_PROGRESS).unwrap();
 }
 
 #[test]
 fn building_can_be_cancelled_and_reports_how_far_it_is() {
     let settings = of_file(asset("explosion_hd"));
-    let cancelled = scene::build(&settings, &VolumeCache::default(), &|_| false);
+    let cancelled = flambeau::scene::assemble(&settings, &VolumeCache::default(), &|_| false);
     assert!(matches!(cancelled, Err(Error::Cancelled)));
     let calls = AtomicU32::new(0);
     let progress = |fraction: f32| {
@@ -253,7 +257,7 @@ fn building_can_be_cancelled_and_reports_how_far_it_is() {
         calls.fetch_add(1, Ordering::Relaxed);
         true
     };
-    scene::build(&settings, &VolumeCache::default(), &progress).unwrap();
+    flambeau::scene::assemble(&settings, &VolumeCache::default(), &progress).unwrap();
     assert!(calls.load(Ordering::Relaxed) > 1);
     let opening =
         scene::open(&asset("cloud"), &Overrides::default(), &VolumeCache::default(), &|_| false);
@@ -268,7 +272,7 @@ fn grids_of_different_voxel_sizes_lie_over_each_other() {
     settings.volume[0].emission.kelvin_scale = Some(1000.0);
     settings.volume[0].scale = scene::settings::Extent::Uniform(2.0);
     let cache = VolumeCache::default();
-    let built = scene::build(&settings, &cache, NO_PROGRESS).unwrap();
+    let built = flambeau::scene::assemble(&settings, &cache, NO_PROGRESS).unwrap();
     let instance = &built.world.instances()[0];
     let described = scene::describe("builtin:torch_hd", &cache, NO_PROGRESS).unwrap();
     for grid in described.grids.iter().filter(|grid| grid.name != "flame") {

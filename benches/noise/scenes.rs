@@ -144,7 +144,7 @@ impl BenchScene {
             .map_err(|error| flambeau::error::Error::io(file, error))?;
         let set = self.set.iter().map(|&set| set.to_owned()).collect();
         let settings = scene::parse(&text, self.file, folder, &Overrides { preset: None, set })?;
-        scene::build(&settings, &VolumeCache::default(), NO_PROGRESS)
+        flambeau::scene::assemble(&settings, &VolumeCache::default(), NO_PROGRESS)
     }
 }
 

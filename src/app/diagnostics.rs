@@ -4,18 +4,18 @@
 mod cells;
 mod legend;
 mod overlay;
+pub mod panel;
 mod plots;
-mod ramp;
 mod ray;
 
 use egui::{Context, Rect, Ui};
 use glam::UVec2;
 
-pub use ramp::{STOPS, Scale, color as ramp_color, stops};
+pub use super::picture::ramp_color::{STOPS, Scale, color as ramp_color, stops};
 
-use super::display::Look;
-use super::engine::Engine;
-use super::viewport::View;
+use super::jobs::live_render::Engine;
+use super::picture::display::Look;
+use super::picture::viewport::View;
 use crate::image::tone::Tone;
 use crate::render::{Layer, Picture};
 use crate::scene::{self, Settings};

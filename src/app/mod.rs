@@ -16,50 +16,28 @@
 //! - `snapshots`: pictures kept in a strip, on the disk between runs.
 //! - `frame_stats`: what the window costs (`FLAMBEAU_FRAME_STATS=FILE`).
 
-mod background;
-mod commands;
-mod data;
+mod command;
+mod compare;
 mod diagnostics;
-mod display;
-mod duel;
-mod engine;
-mod files;
-mod frame_stats;
-mod gizmo;
-mod history;
-mod loader;
-mod navigation;
-mod notices;
+mod document;
+mod jobs;
 mod panels;
-mod prober;
-mod readout;
-mod rectangle;
-mod remembered;
-mod reopen;
-mod saver;
-mod sheet;
+mod picture;
+mod shell;
 mod snapshots;
-mod state;
-mod stops;
 mod sweep;
-mod theme;
-mod up_axis;
-mod viewport;
-mod widgets;
-mod window;
-mod yardstick;
-mod zoom;
+mod ui;
 
-pub use commands::Command;
+pub use command::Command;
+pub use compare::reference::Measure;
+pub use compare::second_side::Layout;
 pub use diagnostics::{Scale, ramp_color};
-pub use duel::Layout;
-pub use engine::Engine;
-pub use files::Dialogs;
-pub use notices::{Level, Notice, Notices};
-pub use state::{Compared, Document, Editor, Side};
+pub use document::{Compared, Document, Editor, Side};
+pub use jobs::dialogs::Dialogs;
+pub use jobs::live_render::Engine;
+pub use shell::{App, Options};
 pub use sweep::{Results, Sweep};
-pub use window::{App, Options};
-pub use yardstick::Measure;
+pub use ui::notices::{Level, Notice, Notices};
 
 use crate::error::{Error, Result};
 
@@ -78,7 +56,7 @@ impl eframe::App for Window {
     }
 
     fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {
-        theme::color::PANEL.to_normalized_gamma_f32()
+        ui::theme::color::PANEL.to_normalized_gamma_f32()
     }
 
     fn persist_egui_memory(&self) -> bool {

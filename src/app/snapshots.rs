@@ -4,7 +4,8 @@
 //! - `strip`: which there are and which is shown; `record`, `thumbnail`: what is shown of each.
 //! - `store`: the folder; `clerk`: the threads that read and write it.
 
-mod clerk;
+mod disk;
+pub mod panel;
 mod record;
 mod store;
 mod strip;
@@ -15,15 +16,15 @@ use std::sync::Arc;
 
 use egui::Context;
 
-pub use clerk::Keep;
+pub use disk::Keep;
 pub use record::{now, strategy};
 pub use strip::{Item, SmallPicture, Strip};
 pub use thumbnail::LARGEST as LARGEST_THUMBNAIL;
 
-use super::notices::Notices;
+use super::ui::notices::Notices;
 use crate::error::Result;
 use crate::render::Picture;
-use clerk::{Clerk, Job, Report};
+use disk::{Clerk, Job, Report};
 use store::Store;
 
 /// Bytes that snapshots take on the disk at most.

@@ -92,7 +92,7 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
         true => scene::fingerprints(&shared)?,
         false => Vec::new(),
     };
-    let scene = scene::build(&shared, &cache, &go_on)?;
+    let scene = scene::assemble(&shared, &cache, &go_on)?;
     let cpu_setup = process_seconds();
     let sides = settings.map(|settings| prepare(&scene, settings));
     let wall_setup = start.elapsed().as_secs_f64();

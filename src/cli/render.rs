@@ -79,7 +79,7 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
         Some(path) => Some(resume(path, &settings, &files)?),
         None => None,
     };
-    let scene = scene::build(&settings, &cache, &go_on)?;
+    let scene = scene::assemble(&settings, &cache, &go_on)?;
     let cpu_setup = process_seconds();
 
     let (film, before) = match resumed {

@@ -40,7 +40,7 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
         let reason = format!("{},{} is off the film of {} x {}", pixel.x, pixel.y, size.x, size.y);
         return Err(Refusal::usage(Error::invalid("", "--pixel", reason)));
     }
-    let scene = scene::build(&settings, &cache, NO_PROGRESS)?;
+    let scene = scene::assemble(&settings, &cache, NO_PROGRESS)?;
     let frame = Frame::new(Arc::new(scene), size, settings.film.seed);
     let mut log = Log::default();
     let sample = frame.trace(pixel, arguments.sample, &mut log);

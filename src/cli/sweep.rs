@@ -17,11 +17,11 @@ use super::render::parse_seconds;
 use super::scene_source::SceneArguments;
 use super::{Exit, Refusal, print, warn};
 use crate::error::{Error, Result};
-use crate::render::in_turns::Amount;
 use crate::render::pool::{Pool, Priority};
 use crate::render::sweep::{
     DEFAULT_SECONDS, Progress, Ranking, SweepJob, Swept, Trial, plan, quick_size, sweep,
 };
+use crate::render::time_slice::Amount;
 use crate::scene::effect::no_effect_with;
 use crate::scene::{self, Settings, VolumeCache};
 use crate::transport::Scene;
@@ -60,7 +60,7 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
     if let Some(folder) = &arguments.output {
         make_folder(folder)?;
     }
-    let scene = scene::build(&settings, &cache, &go_on)?;
+    let scene = scene::assemble(&settings, &cache, &go_on)?;
     let trials =
         plan(&settings.strategy, &|toggle, strategy| no_effect_with(toggle, &settings, strategy));
     let pool = Pool::new(arguments.threads.map(usize::from), Priority::Normal)?;

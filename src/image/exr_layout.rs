@@ -139,7 +139,7 @@ fn whole(value: f32) -> Option<u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::pair::Pair;
+    use crate::math::two_float::Pair;
 
     #[test]
     fn names_follow_the_fields() {

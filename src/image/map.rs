@@ -85,7 +85,7 @@ pub fn write(path: &Path, map: &Map<'_>) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::image::figures::percent;
+    use crate::format::percent;
 
     #[test]
     fn pixels_have_the_colors_of_their_numbers() {

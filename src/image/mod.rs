@@ -8,11 +8,11 @@
 
 pub mod bars;
 mod drawing;
+pub mod export;
 pub mod exr;
 mod exr_color;
 mod exr_header;
 mod exr_layout;
-pub mod figures;
 pub mod legend;
 mod log_axis;
 pub mod map;
@@ -23,7 +23,6 @@ pub mod plot;
 pub mod png;
 pub mod ramp;
 pub mod reference;
-pub mod sheet;
 pub mod tone;
 
 pub use reference::Reference;

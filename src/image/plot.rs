@@ -111,7 +111,7 @@ fn draw(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::image::figures::percent;
+    use crate::format::percent;
 
     fn axes() -> [Axis<'static>; 2] {
         [

@@ -7,6 +7,7 @@ mod frame;
 mod ray;
 mod rng;
 mod sobol;
+pub mod two_float;
 
 pub use aabb::Aabb;
 pub use bvh::Bvh;

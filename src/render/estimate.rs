@@ -4,8 +4,8 @@ use glam::UVec2;
 use rayon::prelude::*;
 
 use super::film::{Film, Sums};
-use super::pair::{Pair, values};
 use crate::math::ACCUMULATORS;
+use crate::math::two_float::{Pair, values};
 
 /// What the samples of one pixel say.
 #[derive(Clone, Copy, Debug)]

@@ -8,8 +8,8 @@ use bytemuck::{Pod, Zeroable, bytes_of};
 use glam::UVec2;
 
 use super::area::Area;
-use super::pair::{Pair, add_rgb};
 use crate::error::{Error, Result};
+use crate::math::two_float::{Pair, add_rgb};
 use crate::math::{ACCUMULATORS, Rgb};
 use crate::transport::PathSample;
 

@@ -5,9 +5,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::UVec2;
 
-use super::engine::{Engine, Step};
 use super::film::Film;
 use super::pool::{Failure, Pool, Priority};
+use super::progressive::{Engine, Step};
 use super::schedule::Limits;
 use crate::error::{Error, Result};
 use crate::transport::PixelSampler;

@@ -11,20 +11,19 @@
 
 pub mod area;
 pub mod compare;
-pub mod engine;
 pub mod estimate;
 pub mod film;
 pub mod headless;
-pub mod in_turns;
 pub mod layers;
-pub mod pair;
 pub mod pool;
+pub mod progressive;
 pub mod publish;
 pub mod schedule;
 pub mod session;
 pub mod side_by_side;
 pub mod sweep;
 mod thread_time;
+pub mod time_slice;
 pub mod turns;
 
 pub use area::Area;

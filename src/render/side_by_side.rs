@@ -6,13 +6,13 @@ use std::sync::atomic::AtomicBool;
 
 use glam::UVec2;
 
-use super::in_turns::{Amount, Turning, take_turns};
 use super::pool::{Pool, Priority};
+use super::time_slice::{Amount, Turning, take_turns};
 use super::turns::Account;
 use crate::error::Result;
 use crate::transport::PixelSampler;
 
-pub use super::in_turns::RenderedSide;
+pub use super::time_slice::RenderedSide;
 
 /// What to compare and for how long.
 pub struct PairJob {

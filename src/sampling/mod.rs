@@ -1,8 +1,8 @@
 //! Samplers, each with its density beside it, and the one place where MIS weights are made.
 
+pub mod airlight;
 pub mod equiangular;
-pub mod fisher;
-pub mod halo;
+pub mod guiding_mixture;
 pub mod mis;
-pub mod towards;
+pub mod von_mises_fisher;
 pub mod warp;

@@ -123,7 +123,7 @@ fn rounded(vector: Vec3A, size: f32) -> Vec3A {
 mod tests {
     use super::*;
     use crate::error::NO_PROGRESS;
-    use crate::scene::{Settings, VolumeCache, build, validate};
+    use crate::scene::{Settings, VolumeCache, assemble, validate};
     use glam::Vec3;
 
     const KINDS: [LightKind; 5] =
@@ -140,7 +140,7 @@ mod tests {
             let light = new_light(kind, &camera);
             let scene = Settings { camera, light: vec![light.clone()], ..Settings::default() };
             validate(&scene, "").unwrap();
-            let built = build(&scene, &VolumeCache::default(), NO_PROGRESS).unwrap();
+            let built = assemble(&scene, &VolumeCache::default(), NO_PROGRESS).unwrap();
             let from = match kind {
                 LightKind::Sun => continue,
                 LightKind::Point | LightKind::Spot => light.position(),

@@ -10,7 +10,7 @@ use glam::DAffine3;
 use super::embedded;
 use super::settings::VolumeSettings;
 use crate::error::{Error, Progress, Result};
-use crate::volume::body::Volume;
+use crate::volume::Volume;
 use crate::volume::grid::{IndexBox, SparseGrid};
 use crate::volume::vdb::{Directory, GridClass, GridInfo, VdbValues};
 

@@ -125,7 +125,7 @@ pub(super) fn guess(file: &Arc<VolumeFile>, progress: Progress) -> Result<Guess>
     let mut settings = Settings::default();
     let visible = seen.iter().filter_map(|one| visible_bounds(&one.grid, one.mean));
     let visible = visible.reduce(|a, b| a.union(&b)).unwrap_or(bounds);
-    let world_bounds = visible.transformed(&super::build::world_from_file(&volume));
+    let world_bounds = visible.transformed(&super::assemble::world_from_file(&volume));
     settings.camera = default_camera(&settings, &world_bounds);
     if glow.is_none() {
         daylight(&mut settings);

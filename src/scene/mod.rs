@@ -6,7 +6,7 @@
 //! ```
 
 mod additions;
-mod build;
+mod assemble;
 pub mod cache;
 mod check;
 mod conventions;
@@ -29,7 +29,7 @@ mod schema;
 pub mod settings;
 
 pub use additions::{floor_under, new_light};
-pub use build::{build, camera};
+pub use assemble::{assemble, camera};
 pub use cache::VolumeCache;
 pub use conventions::{Program, upright};
 pub use describe::{FileDescription, GridDescription, VoxelDescription, describe};

@@ -4,17 +4,19 @@
 //! All have the same mean. They differ in where they look at the emission and in how they learn
 //! the transmittance in front of it.
 
+pub(super) mod optimal;
+pub(super) mod stratified;
+
 use std::ops::ControlFlow;
 
 use glam::UVec2;
 
-use super::{
-    march, optimal,
-    scene::Scene,
-    strategy::{Advanced, BoostMode, Integrator, Strategy},
-    stratified,
-    tracking::{Collision, EMISSION_FLOOR, Walk, exp_neg, null_coefficient, roulette, track},
-    tuning,
+use super::march;
+use super::prepare::optimal_majorant;
+use super::scene::Scene;
+use super::strategy::{Advanced, BoostMode, Integrator, Strategy};
+use super::tracking::{
+    Collision, EMISSION_FLOOR, Walk, exp_neg, null_coefficient, roulette, track,
 };
 use crate::{
     math::{PathRng, Rgb},
@@ -90,7 +92,7 @@ impl Gatherer {
             // The looks along camera rays are what is measured; without them, none.
             BoostMode::Optimal if strategy.emission_ratio_tracking && amount > 0.0 => {
                 let scale = amount / Advanced::default().boost_amount;
-                Kind::Optimal(scale * tuning::looks(scene, size))
+                Kind::Optimal(scale * optimal_majorant::looks(scene, size))
             }
             BoostMode::Optimal => Kind::Optimal(amount),
             BoostMode::Clamped | BoostMode::Literal => {

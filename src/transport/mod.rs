@@ -1,31 +1,24 @@
 //! How light moves through volumes: the strategies and the paths they sample. Read `path` first.
 
 pub mod camera;
-mod caustics;
 pub mod direct;
-mod directions;
 mod distance;
-mod effort;
 pub mod emission;
-mod learning;
+mod guiding;
 mod march;
 pub mod observer;
-mod optimal;
 pub mod path;
-mod pilot;
+mod prepare;
 pub mod probes;
 pub mod profile;
 pub mod scene;
 pub mod shadow;
-mod site;
 pub mod strategy;
-mod stratified;
 pub mod toggle;
 pub mod tracking;
 mod transmittance;
-mod tuning;
 pub mod vertex;
-mod window;
+mod weight_window;
 
 use std::sync::{Arc, OnceLock};
 
@@ -140,7 +133,11 @@ impl Frame {
         let ray = self.scene.camera.ray(self.size, pixel, offset);
         // The first sample does not wait for the pilot, so that a camera on the move never does.
         let learns = self.probes.is_some() && self.scene.strategy.learns_share();
-        let flights = if learns && sample == 0 { pilot::FIRST } else { self.guided_flights() };
+        let flights = if learns && sample == 0 {
+            prepare::guided_flights::FIRST
+        } else {
+            self.guided_flights()
+        };
         let aids = self.aids(flights);
         path::trace(&self.scene, aids, ray, &mut rng, observer)
     }
@@ -156,7 +153,9 @@ impl Frame {
         if self.probes.is_none() || !self.scene.strategy.learns_share() {
             return 1.0;
         }
-        *self.flights.get_or_init(|| pilot::flights(&self.scene, self.size, |f| self.aids(f)))
+        *self.flights.get_or_init(|| {
+            prepare::guided_flights::flights(&self.scene, self.size, |f| self.aids(f))
+        })
     }
 }
 

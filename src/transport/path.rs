@@ -10,21 +10,17 @@
 
 use glam::Vec3A;
 
-use super::{
-    PathSample,
-    direct::{self, Departure},
-    directions,
-    distance::{self, Fan, Guide},
-    emission::{Errand, Gatherer, Glow},
-    march,
-    observer::{Observer, Step},
-    probes::{Brightness, Probes},
-    scene::Scene,
-    strategy::Strategy,
-    tracking::{self, Event, Flight},
-    vertex::{Turn, Vertex},
-    window::{Copies, MOST_NESTED},
-};
+use super::direct::Departure;
+use super::distance::{Fan, Guide};
+use super::emission::{Errand, Gatherer, Glow};
+use super::observer::{Observer, Step};
+use super::probes::{Brightness, Probes};
+use super::scene::Scene;
+use super::strategy::Strategy;
+use super::tracking::{Event, Flight};
+use super::vertex::{Turn, Vertex};
+use super::weight_window::{Copies, MOST_NESTED};
+use super::{PathSample, direct, distance, guiding, march, tracking};
 use crate::{
     light::{Choice, Receiver},
     math::{PathRng, Ray, Rgb, mean},
@@ -434,7 +430,7 @@ impl Path<'_> {
             Some(probes) => {
                 // Without guided flights there are no splits that would even out what the glow brings.
                 let light = self.light.filter(|_| self.aids.flights > 0.0);
-                let towards = directions::towards(&strategy.advanced, probes, vertex, light);
+                let towards = guiding::towards(&strategy.advanced, probes, vertex, light);
                 vertex.sample_towards(&towards, rng)
             }
             None => vertex.sample(rng),

@@ -9,10 +9,11 @@
 //! They guide and no more: whatever they say, the picture's mean stays, as long as no sample
 //! changes what guides it.
 
+mod airlight;
 mod brightness;
-mod focus;
-mod halo;
-mod line;
+mod caustic_lobes;
+pub(super) mod caustics;
+mod distance_pdf;
 mod octree;
 mod probe;
 mod scores;
@@ -32,10 +33,10 @@ use crate::{
     volume::{medium::Segment, world::MediumRay},
 };
 pub use brightness::Brightness;
-use focus::Foci;
-pub(super) use focus::{Beam, Focus};
-pub use line::Line;
-use line::{LineBuilder, Stretch};
+use caustic_lobes::Foci;
+pub(super) use caustic_lobes::{Beam, Focus};
+pub use distance_pdf::Line;
+use distance_pdf::{LineBuilder, Stretch};
 use octree::{Octree, child_of};
 pub(super) use probe::Indirect;
 use probe::Probe;
@@ -86,7 +87,7 @@ impl Probes {
         let cube = octree.bounds();
         let builder = Builder { scene, gatherer: Gatherer::at_a_glance(), scattering };
         let first = builder.probe(0, &cube);
-        let scattered = halo::scattered_share(scene);
+        let scattered = airlight::scattered_share(scene);
         let mut probes = Self {
             octree,
             probes: vec![first],

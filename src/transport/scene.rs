@@ -27,6 +27,7 @@ impl Scene {
         use crate::scene;
         let folder = std::path::Path::new(".");
         let settings = scene::parse(text, "test", folder, &scene::Overrides::default()).unwrap();
-        scene::build(&settings, &scene::VolumeCache::default(), crate::error::NO_PROGRESS).unwrap()
+        scene::assemble(&settings, &scene::VolumeCache::default(), crate::error::NO_PROGRESS)
+            .unwrap()
     }
 }

@@ -550,17 +550,13 @@ mod tests {
     use glam::{Affine3A, UVec2, Vec3A};
 
     use super::*;
-    use crate::{
-        math::{Aabb, Ray},
-        transport::strategy::Preset,
-        volume::{
-            body::{Region, Substance, Volume},
-            emission::Emission,
-            field::{RgbField, ScalarField},
-            procedural::Noise,
-            world::{Instance, World},
-        },
-    };
+    use crate::math::{Aabb, Ray};
+    use crate::transport::strategy::Preset;
+    use crate::volume::emission::Emission;
+    use crate::volume::field::{RgbField, ScalarField};
+    use crate::volume::procedural::Noise;
+    use crate::volume::world::{Instance, World};
+    use crate::volume::{Region, Substance, Volume};
 
     /// Every tentative collision of a walk that shares another's random numbers, and what there is.
     struct Recorder {

@@ -5,13 +5,11 @@ use std::f32::consts::PI;
 
 use glam::{Vec2, Vec3A};
 
-use crate::{
-    light::Receiver,
-    math::{PathRng, Ray, Rgb, Slot, mean},
-    sampling::towards::Towards,
-    surface::{Bsdf, Hit, Intersection},
-    volume::phase::PhaseMix,
-};
+use crate::light::Receiver;
+use crate::math::{PathRng, Ray, Rgb, Slot, mean};
+use crate::sampling::guiding_mixture::Towards;
+use crate::surface::{Bsdf, Hit, Intersection};
+use crate::volume::phase::PhaseMix;
 
 /// Share of a guess at a vertex's value that is the same for all directions.
 const SHARE_OF_EVEN: f32 = 0.2;

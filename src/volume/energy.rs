@@ -10,7 +10,9 @@ use std::f32::consts::TAU;
 use glam::{DVec3, IVec3, Vec3A};
 use rayon::prelude::*;
 
-use super::{body::Region, cells::CellGrid, majorant::MajorantGrid};
+use super::Region;
+use super::cells::CellGrid;
+use super::majorant::MajorantGrid;
 use crate::{
     math::{Aabb, Ray},
     sampling::warp::spherical,

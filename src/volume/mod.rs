@@ -1,7 +1,6 @@
 //! What fills space. Light transport reads `medium` and asks `world`; the rest is behind them.
 
 pub mod blackbody;
-pub mod body;
 pub mod cells;
 pub mod emission;
 pub mod energy;
@@ -12,4 +11,7 @@ pub mod medium;
 pub mod phase;
 pub mod procedural;
 pub mod vdb;
+mod volume;
 pub mod world;
+
+pub use volume::{Bounds, Region, Substance, Volume};

@@ -13,7 +13,7 @@ use emissive::Emissive;
 use glam::{Affine3A, Vec3A};
 use smallvec::SmallVec;
 
-use super::body::{Region, Volume};
+use super::{Region, Volume};
 use crate::math::{Aabb, Bvh, Ray, Rgb};
 
 /// Up to this many volumes are tried one by one, which costs less than a hierarchy.

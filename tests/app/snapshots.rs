@@ -69,7 +69,7 @@ fn same(a: &image::RgbaImage, b: &image::RgbaImage) -> bool {
 
 /// The film of a scene after `spp` samples, rendered without a window.
 fn headless(settings: &Settings, spp: u32) -> Film {
-    let scene = scene::build(settings, &VolumeCache::default(), NO_PROGRESS).unwrap();
+    let scene = scene::assemble(settings, &VolumeCache::default(), NO_PROGRESS).unwrap();
     let size = UVec2::from(settings.film.size);
     let job = Job {
         sampler: Arc::new(Frame::new(Arc::new(scene), size, settings.film.seed)),

@@ -64,7 +64,7 @@ pub fn seed() -> u64 {
 pub fn build(text: &str) -> Scene {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests");
     let settings = scene::parse(text, "test scene", &folder, &Overrides::default()).unwrap();
-    scene::build(&settings, &VolumeCache::default(), NO_PROGRESS).unwrap()
+    flambeau::scene::assemble(&settings, &VolumeCache::default(), NO_PROGRESS).unwrap()
 }
 
 /// A built scene under another strategy.

@@ -101,7 +101,7 @@ fn placements_that_cannot_be_undone_are_refused_by_name() {
         let result = flambeau::scene::parse(&text, "extreme", folder, &Default::default())
             .and_then(|settings| {
                 let cache = flambeau::scene::VolumeCache::default();
-                flambeau::scene::build(&settings, &cache, flambeau::error::NO_PROGRESS)
+                flambeau::scene::assemble(&settings, &cache, flambeau::error::NO_PROGRESS)
             });
         if let Err(error) = result {
             assert!(error.to_string().contains("volume.0.scale"), "{error}");

@@ -8,16 +8,12 @@
 use std::{f64::consts::TAU, sync::Arc};
 
 use crate::common::{self, Z_LIMIT, build};
-use flambeau::{
-    math::{Aabb, Frame, PathRng, Ray, Rgb, luminance},
-    sampling::warp::about_axis,
-    volume::{
-        body::{Region, Substance, Volume},
-        emission::Emission,
-        field::{RgbField, ScalarField},
-        world::{Instance, World},
-    },
-};
+use flambeau::math::{Aabb, Frame, PathRng, Ray, Rgb, luminance};
+use flambeau::sampling::warp::about_axis;
+use flambeau::volume::emission::Emission;
+use flambeau::volume::field::{RgbField, ScalarField};
+use flambeau::volume::world::{Instance, World};
+use flambeau::volume::{Region, Substance, Volume};
 use glam::{Affine3A, EulerRot, Quat, UVec2, Vec3, Vec3A};
 use rayon::prelude::*;
 

@@ -1,6 +1,6 @@
 //! The strongest cells of a scene's volumes, gathered behind the window's back.
 
-use crate::app::background::Background;
+use crate::app::jobs::background::Background;
 use std::sync::Arc;
 
 use glam::Vec3A;
@@ -9,8 +9,8 @@ use super::{CellValue, Scale};
 use crate::math::Aabb;
 use crate::transport::Scene;
 use crate::transport::probes::Probes;
-use crate::volume::body::{Bounds, Region};
 use crate::volume::world::Instance;
+use crate::volume::{Bounds, Region};
 
 /// The most cells that are drawn.
 pub const MOST: usize = 4000;
@@ -214,14 +214,14 @@ mod tests {
 
     use super::*;
     use crate::error::NO_PROGRESS;
-    use crate::scene::{Overrides, Settings, VolumeCache, build, parse};
+    use crate::scene::{Overrides, Settings, VolumeCache, assemble, parse};
 
     fn settings() -> Settings {
         parse(TWO, "", Path::new(""), &Overrides::default()).unwrap()
     }
 
     fn scene() -> Scene {
-        build(&settings(), &VolumeCache::default(), NO_PROGRESS).unwrap()
+        assemble(&settings(), &VolumeCache::default(), NO_PROGRESS).unwrap()
     }
 
     const TWO: &str = r#"
@@ -305,7 +305,7 @@ density = { scale = 0.1 }
         let mut settings = settings();
         let cache = VolumeCache::default();
         let mut source = || {
-            let scene = build(&settings, &cache, NO_PROGRESS).unwrap();
+            let scene = assemble(&settings, &cache, NO_PROGRESS).unwrap();
             let source =
                 Source { value: CellValue::Majorant, scene: Arc::new(scene), probes: None };
             settings.camera.position[0] += 1.0;
@@ -314,7 +314,7 @@ density = { scale = 0.1 }
         let (first, second) = (source(), source());
         assert!(first.has_cells_of(&second));
         settings.volume[0].translate[2] = 1.0;
-        let scene = Arc::new(build(&settings, &cache, NO_PROGRESS).unwrap());
+        let scene = Arc::new(assemble(&settings, &cache, NO_PROGRESS).unwrap());
         assert!(!first.has_cells_of(&Source { scene, ..second }));
     }
 
@@ -325,7 +325,7 @@ density = { scale = 0.1 }
         for volume in &mut settings.volume {
             volume.albedo = crate::scene::settings::Albedo::Gray(0.5);
         }
-        let scene = build(&settings, &VolumeCache::default(), NO_PROGRESS).unwrap();
+        let scene = assemble(&settings, &VolumeCache::default(), NO_PROGRESS).unwrap();
         let probes = Probes::new(&scene).map(Arc::new);
         let scene = Arc::new(scene);
         let source = Source { value: CellValue::Probes, scene, probes };

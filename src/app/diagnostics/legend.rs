@@ -4,11 +4,11 @@ use egui::{Align, Frame, Label, Layout, Margin, Rect, RichText, Ui, UiBuilder, p
 
 use super::cells::Cells;
 use super::{CellValue, Scale, overlay};
-use crate::app::duel::maps::{ColorKey, Difference, MapKind, Noise};
-use crate::app::state::Side;
-use crate::app::theme::{color, space};
-use crate::app::widgets::significant;
-use crate::app::yardstick::Measure;
+use crate::app::compare::maps::{ColorKey, Difference, MapKind, Noise};
+use crate::app::compare::reference::Measure;
+use crate::app::document::Side;
+use crate::app::ui::theme::{color, space};
+use crate::app::ui::widgets::significant;
 use crate::image::tone::false_color;
 use crate::render::Layer;
 

@@ -5,8 +5,9 @@ use egui::{Color32, Mesh, Painter, Rect, Shape, Stroke, Ui};
 use glam::{UVec2, Vec3A};
 
 use super::cells::{Cell, Cells};
-use super::{Scale, picture_rect, ramp};
-use crate::app::viewport::View;
+use super::{Scale, picture_rect};
+use crate::app::picture::ramp_color;
+use crate::app::picture::viewport::View;
 use crate::transport::camera::Camera;
 
 /// Up to this many cells are drawn as boxes.
@@ -64,7 +65,7 @@ struct Canvas<'a> {
 impl Canvas<'_> {
     fn draw_box(&self, painter: &Painter, cell: &Cell, scale: Scale) {
         let corners = cell.corners.map(|corner| self.camera.view_from_world(corner));
-        let stroke = Stroke::new(LINE, ramp::color(scale.place(cell.value)));
+        let stroke = Stroke::new(LINE, ramp_color::color(scale.place(cell.value)));
         let near = NEAR * cell.edge;
         for (a, b) in EDGES {
             if let Some([a, b]) = in_front([corners[a], corners[b]], near) {
@@ -83,7 +84,7 @@ impl Canvas<'_> {
         let side = (DOT * pixels * points_per_pixel).clamp(DOT_SIDES[0], DOT_SIDES[1]);
         let dot = Rect::from_center_size(self.window(center), egui::Vec2::splat(side));
         if dot.is_finite() && visible.intersects(dot) {
-            let color = ramp::color(scale.place(cell.value));
+            let color = ramp_color::color(scale.place(cell.value));
             mesh.add_colored_rect(dot, color.gamma_multiply(DOT_OPACITY));
         }
     }
@@ -110,8 +111,8 @@ fn in_front(line: [Vec3A; 2], near: f32) -> Option<[Vec3A; 2]> {
 /// The colors of a scale as a bar, from left to right; `color` gives that of a place in 0..=1.
 pub fn bar(rect: Rect, color: impl Fn(f32) -> Color32) -> Mesh {
     let mut mesh = Mesh::default();
-    for index in 0..=ramp::STOPS as u32 - 1 {
-        let place = index as f32 / (ramp::STOPS - 1) as f32;
+    for index in 0..=ramp_color::STOPS as u32 - 1 {
+        let place = index as f32 / (ramp_color::STOPS - 1) as f32;
         let color = color(place);
         let x = egui::lerp(rect.x_range(), place);
         mesh.colored_vertex(egui::pos2(x, rect.top()), color);

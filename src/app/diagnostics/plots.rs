@@ -4,8 +4,8 @@ use egui::{RichText, Stroke, Ui};
 use egui_plot::{GridMark, Line, Plot, PlotPoints, PlotUi, VLine, uniform_grid_spacer};
 
 use super::ray::{Curve, DENSITIES, SHARES};
-use crate::app::theme::color;
-use crate::app::widgets::significant;
+use crate::app::ui::theme::color;
+use crate::app::ui::widgets::significant;
 use crate::transport::profile::Row;
 
 /// Width of a plot in points, and its height without the axis below.

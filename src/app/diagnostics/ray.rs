@@ -6,11 +6,11 @@ use egui::{Color32, Context, CursorIcon, Grid, Label, RichText, Sense, Stroke, U
 use glam::{UVec2, Vec2};
 
 use super::plots;
-use crate::app::background::Background;
-use crate::app::engine::Engine;
-use crate::app::theme::{color, space};
-use crate::app::viewport::View;
-use crate::app::widgets::significant;
+use crate::app::jobs::background::Background;
+use crate::app::jobs::live_render::Engine;
+use crate::app::picture::viewport::View;
+use crate::app::ui::theme::{color, space};
+use crate::app::ui::widgets::significant;
 use crate::transport::probes::Probes;
 use crate::transport::profile::{Profile, Row};
 use crate::transport::{Frame, Scene};

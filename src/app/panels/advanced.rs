@@ -3,8 +3,8 @@
 use egui::Ui;
 
 use super::{Panel, explain};
-use crate::app::theme::space;
-use crate::app::widgets::{Number, capitalized, choice, choice_but, key_help};
+use crate::app::ui::theme::space;
+use crate::app::ui::widgets::{Number, capitalized, choice, choice_but, key_help};
 use crate::transport::strategy::{Advanced, BoostMode, Strategy, Tracker};
 
 /// Shows them; what its toggle does not use is dimmed.

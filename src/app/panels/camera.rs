@@ -3,8 +3,8 @@
 use egui::Ui;
 
 use super::{Panel, section};
-use crate::app::commands::Command;
-use crate::app::widgets::{Number, Vector};
+use crate::app::command::Command;
+use crate::app::ui::widgets::{Number, Vector};
 
 /// Shows the section.
 pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {

@@ -4,9 +4,10 @@
 use egui::{Frame, Margin, Rect, ScrollArea, Ui, UiBuilder};
 use glam::UVec2;
 
-use super::sections::{Sections, Tops};
-use super::{Panel, camera, diagnostics, display, film, lights, strategy, surfaces, volume};
-use crate::app::theme::space;
+use super::{Panel, camera, display, film, lights, strategy, surfaces, volume};
+use crate::app::diagnostics::panel;
+use crate::app::ui::sections::{Sections, Tops};
+use crate::app::ui::theme::space;
 
 /// Shows it in `frame`; `size` of the film as the window has it, and the largest side that one may
 /// have.
@@ -40,7 +41,7 @@ pub fn show(
                 camera::show(ui, panel);
                 film::show(ui, panel, size, largest);
                 display::show(ui, panel);
-                diagnostics::show(ui, panel.wanted);
+                panel::show(ui, panel.wanted);
             });
             follow_keyboard(ui);
         });

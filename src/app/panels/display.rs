@@ -3,8 +3,8 @@
 use egui::Ui;
 
 use super::{Panel, section};
-use crate::app::commands::Command;
-use crate::app::widgets::{Number, key_of, list, row, segments};
+use crate::app::command::Command;
+use crate::app::ui::widgets::{Number, key_of, list, row, segments};
 use crate::image::tone::{Channel, Tone, ToneCurve, white};
 use crate::render::Layer;
 

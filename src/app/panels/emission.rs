@@ -3,7 +3,7 @@
 use egui::Ui;
 
 use super::explain;
-use crate::app::widgets::{Number, color_rows, key_help, list, row, segments, strength, tint};
+use crate::app::ui::widgets::{Number, color_rows, key_help, list, row, segments, strength, tint};
 use crate::scene::settings::{Color, EmissionMode, EmissionSettings, Normalize, VolumeSettings};
 use crate::scene::{GridDescription, Role, VoxelDescription};
 

@@ -4,8 +4,8 @@ use egui::{DragValue, Ui, vec2};
 use glam::UVec2;
 
 use super::{Panel, section};
-use crate::app::theme::space;
-use crate::app::widgets::{finite, is_reset, key_help, row, row_label, segments};
+use crate::app::ui::theme::space;
+use crate::app::ui::widgets::{finite, is_reset, key_help, row, row_label, segments};
 use crate::scene::keys;
 use crate::scene::settings::FilmSettings;
 

@@ -2,8 +2,8 @@
 
 use egui::{Button, Color32, Grid, Painter, Rect, RichText, Sense, Ui, vec2};
 
-use crate::app::theme::{color, space};
-use crate::app::widgets::{count, significant};
+use crate::app::ui::theme::{color, space};
+use crate::app::ui::widgets::{count, significant};
 use crate::scene::settings::{EmissionMode, VolumeSettings};
 use crate::scene::{About, GridDescription, Note, Role, VoxelDescription};
 

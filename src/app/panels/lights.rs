@@ -3,8 +3,8 @@
 use egui::{Button, RichText, Ui, vec2};
 
 use super::{Panel, folded_section};
-use crate::app::theme::color;
-use crate::app::widgets::{
+use crate::app::ui::theme::color;
+use crate::app::ui::widgets::{
     Number, Vector, choice, color_rows, key_help, scaled, significant, strength,
 };
 use crate::scene::new_light;

@@ -1,46 +1,30 @@
 //! The panels, one file each.
 
 pub mod advanced;
-pub mod bars;
 pub mod camera;
-mod chooser;
 pub mod column;
-pub mod compare;
-pub mod diagnostics;
 pub mod display;
 pub mod emission;
-pub mod figures;
 pub mod film;
 pub mod grids;
-pub mod help;
 pub mod lights;
-pub mod measures;
-pub mod menu;
-pub mod noise_plot;
-pub mod palette;
 pub mod placement;
 pub mod ramp;
-pub mod sections;
-pub mod start;
-pub mod status;
 pub mod strategy;
-pub mod strip;
 pub mod surfaces;
-pub mod sweep;
-pub mod unsaved;
 pub mod volume;
 
 use egui::{RichText, Ui};
 
-pub use sections::{folded_section, section};
+pub use super::ui::sections::{folded_section, section};
 
-use super::commands::Command;
+use super::command::Command;
+use super::compare::reference::Yardstick;
+use super::compare::second_side::Duel;
 use super::diagnostics::Wanted;
-use super::duel::Duel;
-use super::loader::Grids;
-use super::state::Editor;
-use super::theme::color;
-use super::yardstick::Yardstick;
+use super::document::Editor;
+use super::jobs::scene_loader::Grids;
+use super::ui::theme::color;
 use crate::math::Aabb;
 use crate::scene::Note;
 

@@ -2,8 +2,8 @@
 
 use egui::{DragValue, Ui, vec2};
 
-use crate::app::theme::space;
-use crate::app::widgets::{Number, Vector, choice, finite, is_reset, key_help, row_label};
+use crate::app::ui::theme::space;
+use crate::app::ui::widgets::{Number, Vector, choice, finite, is_reset, key_help, row_label};
 use crate::scene::settings::{Extent, RampKind, VolumeSettings, VolumeShape};
 
 /// Degrees that a point of a drag turns.

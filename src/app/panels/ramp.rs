@@ -7,9 +7,10 @@ use egui::{
 };
 
 use super::grids::histogram_bars;
-use crate::app::stops::{self, Stop};
-use crate::app::theme::{color, space};
-use crate::app::widgets::{Number, arrow_steps, from_rgb, key_help, scaled, strength, tint};
+use crate::app::document::ramp_stops;
+use crate::app::document::ramp_stops::Stop;
+use crate::app::ui::theme::{color, space};
+use crate::app::ui::widgets::{Number, arrow_steps, from_rgb, key_help, scaled, strength, tint};
 use crate::scene::VoxelDescription;
 use crate::scene::settings::Color;
 
@@ -106,7 +107,7 @@ impl Editor {
             key_help(KEY)
         );
         if let Some(at) = response.interact_pointer_pos().filter(|_| response.double_clicked()) {
-            self.selected = stops::add(stops, value_at(at.x, rect, span));
+            self.selected = ramp_stops::add(stops, value_at(at.x, rect, span));
             self.edit = Some("add a stop");
         }
         response.on_hover_text(help);
@@ -132,7 +133,7 @@ impl Editor {
                 self.selected = index;
             }
             if let Some(at) = response.interact_pointer_pos().filter(|_| response.dragged()) {
-                stops::shift(stops, index, value_at(at.x, rail, span), span);
+                ramp_stops::shift(stops, index, value_at(at.x, rail, span), span);
                 self.edit = Some("move a stop");
             }
             let is_gone = response.has_focus() && self.keys(ui, id, stops, index, span);
@@ -160,14 +161,14 @@ impl Editor {
         if steps != 0.0 {
             let value = stops.get(index).map_or(0.0, |stop| stop[0]);
             let step = NUDGE * (span.end() - span.start());
-            stops::shift(stops, index, value + steps * step, span);
+            ramp_stops::shift(stops, index, value + steps * step, span);
             self.edit = Some("move a stop");
         }
         // Consumed, so that the next stop, which takes its place and focus, does not go too.
         let consume = |key| ui.input_mut(|input| input.consume_key(Modifiers::NONE, key));
         let deletes = (consume(Key::Delete) || consume(Key::Backspace)) && stops.len() > 1;
         if deletes {
-            self.selected = stops::remove(stops, index);
+            self.selected = ramp_stops::remove(stops, index);
             self.edit = Some("delete a stop");
         }
         deletes
@@ -183,12 +184,12 @@ impl Editor {
         ui.horizontal(|ui| {
             let help = "Add a stop where there is most room, in the color that is there already.";
             if ui.button("Add stop").on_hover_text(help).clicked() {
-                self.selected = stops::add_anywhere(stops, span);
+                self.selected = ramp_stops::add_anywhere(stops, span);
                 self.edit = Some("add a stop");
             }
             let delete = ui.add_enabled(stops.len() > 1, egui::Button::new("Delete stop"));
             if delete.on_hover_text("Take the chosen stop out.").clicked() {
-                self.selected = stops::remove(stops, self.selected);
+                self.selected = ramp_stops::remove(stops, self.selected);
                 self.edit = Some("delete a stop");
             }
             let reset = ui.add_enabled(*stops != opened, egui::Button::new("Reset ramp"));
@@ -222,7 +223,7 @@ impl Editor {
         if number.show(ui, &mut moved) {
             // What is typed may lie beyond what is drawn.
             let wide = span.start().min(moved)..=span.end().max(moved);
-            stops::shift(stops, self.selected, moved, &wide);
+            ramp_stops::shift(stops, self.selected, moved, &wide);
             self.edit = Some("move a stop");
         }
         let before = from_rgb([r, g, b]);
@@ -273,7 +274,7 @@ fn gradient(rect: Rect, stops: &[Stop], span: &RangeInclusive<f32>) -> Mesh {
     let mut mesh = Mesh::default();
     for index in 0..=SAMPLES {
         let x = egui::lerp(rect.x_range(), f32::from(index) / f32::from(SAMPLES));
-        let rgb = stops::color(stops, value_at(x, rect, span)).to_array();
+        let rgb = ramp_stops::color(stops, value_at(x, rect, span)).to_array();
         let color = shown(rgb, brightest);
         mesh.colored_vertex(pos2(x, rect.top()), color);
         mesh.colored_vertex(pos2(x, rect.bottom()), color);

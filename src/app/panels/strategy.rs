@@ -2,11 +2,12 @@
 
 use egui::{CollapsingHeader, Layout, RichText, Ui};
 
-use super::sections::mark;
-use super::{Panel, advanced, compare, explain, section};
-use crate::app::commands::Command;
-use crate::app::theme::{color, space};
-use crate::app::widgets::{capitalized, key_help, key_summary, row, segments};
+use super::{Panel, advanced, explain, section};
+use crate::app::command::Command;
+use crate::app::compare::panel;
+use crate::app::ui::sections::mark;
+use crate::app::ui::theme::{color, space};
+use crate::app::ui::widgets::{capitalized, key_help, key_summary, row, segments};
 use crate::scene::effect::no_effect;
 use crate::transport::strategy::Preset;
 use crate::transport::toggle::Toggle;
@@ -28,7 +29,7 @@ pub fn toggle_of(command: Command) -> Option<Toggle> {
 /// Shows the section.
 pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
     section(ui, "Strategy", |ui| {
-        compare::sides(ui, panel);
+        panel::sides(ui, panel);
         mark(ui, "toggles");
         presets(ui, panel);
         if panel.editor.document.settings.strategy.is_biased() {

@@ -3,8 +3,8 @@
 use egui::{CollapsingHeader, RichText, Ui};
 
 use super::{Panel, folded_section, placement};
-use crate::app::theme::color;
-use crate::app::widgets::{
+use crate::app::ui::theme::color;
+use crate::app::ui::widgets::{
     Number, Vector, choice, color_rows, key_help, row_label, segments, strength,
 };
 use crate::math::Aabb;

@@ -3,11 +3,12 @@
 use egui::accesskit::Role;
 use egui::{CollapsingHeader, RichText, Ui, WidgetInfo};
 
-use super::{Panel, chooser, emission, grids, placement, section};
-use crate::app::state::Document;
-use crate::app::theme::color;
-use crate::app::up_axis;
-use crate::app::widgets::{Number, capitalized, color_rows, key_help, row, segments, strength};
+use super::{Panel, emission, grids, placement, section};
+use crate::app::document::Document;
+use crate::app::document::up_axis;
+use crate::app::ui::chooser;
+use crate::app::ui::theme::color;
+use crate::app::ui::widgets::{Number, capitalized, color_rows, key_help, row, segments, strength};
 use crate::scene::settings::{Albedo, Axis, Color, VolumeSettings};
 use crate::scene::{About, GridDescription, Note, Program, Settings};
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use egui::{ColorImage, TextureHandle};
 
-use super::clerk::{Job, Pictured};
+use super::disk::{Job, Pictured};
 use super::record::{LONGEST_NAME, LONGEST_NOTE, Record};
 use super::store::Entry;
 use crate::render::Picture;

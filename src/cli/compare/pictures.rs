@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use crate::error::Result;
+use crate::format::percent;
 use crate::image::exr::{self, Header};
-use crate::image::figures::percent;
 use crate::image::map::{self, Colors, Map};
 use crate::image::plot::{self, Axis, Curve, Plot};
 use crate::image::ramp::Scale;

@@ -10,7 +10,7 @@ use super::errors::Errors;
 use crate::cli::stats::Spent;
 use crate::error::{Error, Result};
 use crate::files;
-use crate::image::figures::{percent, rounded};
+use crate::format::{percent, rounded};
 use crate::render::compare::{
     ALARM, Agreement, Difference, FEWEST_SAMPLES, Side, SpeedUp, Verdict,
 };

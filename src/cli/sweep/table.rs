@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::cli::compare::{SpeedUpRow, put};
 use crate::error::{Error, Result};
-use crate::image::figures::{percent, rounded};
+use crate::format::{percent, rounded};
 use crate::render::compare::{Side, SpeedUp};
 use crate::render::sweep::words::{headline, note, relative_time, remarks};
 use crate::render::sweep::{Entry, Gain, Ranking, Swept, Worth};

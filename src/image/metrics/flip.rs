@@ -21,14 +21,14 @@ mod tests;
 use glam::UVec2;
 use rayon::prelude::*;
 
-use self::color::{hunt_lab, hyab, linear_from_opponent, opponent_from_code};
-use self::contrast::Contrast;
-use self::features::{Detectors, Features};
 use super::ErrorMap;
 use crate::error::{Error, Result};
 use crate::image::reference::Reference;
 use crate::image::tone::Tone;
 use crate::math::Rgb;
+use color::{hunt_lab, hyab, linear_from_opponent, opponent_from_code};
+use contrast::Contrast;
+use features::{Detectors, Features};
 
 /// Pixels in a degree of the viewer's visual field as the paper assumes: a screen of 3840 pixels on
 /// 0.7 m, seen from 0.7 m.

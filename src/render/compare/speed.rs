@@ -1,7 +1,7 @@
 //! How much faster one setting is than another, and the sentence that says so.
 
 use super::Side;
-use crate::image::figures::rounded;
+use crate::format::rounded;
 use crate::render::estimate::FEWEST_FOR_VARIANCE;
 
 /// Standard errors on either side of an estimate that hold the truth with 95 %.

@@ -26,7 +26,7 @@ const SIZE: UVec2 = UVec2::new(24, 16);
 fn scene() -> Scene {
     let folder = std::path::Path::new(".");
     let settings = scene::parse(SCENE, "test", folder, &Overrides::default()).unwrap();
-    scene::build(&settings, &VolumeCache::default(), NO_PROGRESS).unwrap()
+    scene::assemble(&settings, &VolumeCache::default(), NO_PROGRESS).unwrap()
 }
 
 fn swept(

@@ -2,7 +2,7 @@
 
 use super::plan::Source;
 use super::ranking::{Entry, Gain, Ranking, Worth};
-use crate::image::figures::{percent, rounded};
+use crate::format::{percent, rounded};
 use crate::render::compare::SpeedUp;
 
 /// Names in a row before the rest is counted.

@@ -5,16 +5,12 @@ use std::sync::Arc;
 use glam::{Affine3A, DVec3, UVec2, Vec3A};
 
 use super::*;
-use crate::{
-    math::{Aabb, Ray, Slot},
-    volume::{
-        body::{Region, Substance, Volume},
-        emission::Emission,
-        field::{RgbField, ScalarField},
-        procedural::Noise,
-        world::{Instance, World},
-    },
-};
+use crate::math::{Aabb, Ray, Slot};
+use crate::volume::emission::Emission;
+use crate::volume::field::{RgbField, ScalarField};
+use crate::volume::procedural::Noise;
+use crate::volume::world::{Instance, World};
+use crate::volume::{Region, Substance, Volume};
 
 /// Largest |z|: of the 150 comparisons here one fails by chance once in 10 000 sets of jitters.
 const Z_LIMIT: f64 = 5.0;

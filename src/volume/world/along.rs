@@ -4,16 +4,12 @@
 use smallvec::SmallVec;
 
 use super::{Instance, World};
-use crate::{
-    math::{Ray, Rgb},
-    volume::{
-        body::Bounds,
-        cells::CellWalk,
-        majorant::Majorant,
-        medium::{Coefficients, Segment},
-        phase::PhaseMix,
-    },
-};
+use crate::math::{Ray, Rgb};
+use crate::volume::Bounds;
+use crate::volume::cells::CellWalk;
+use crate::volume::majorant::Majorant;
+use crate::volume::medium::{Coefficients, Segment};
+use crate::volume::phase::PhaseMix;
 
 /// A volume that the ray enters. Few bytes, since a ray may meet many.
 #[derive(Clone, Copy, Debug)]

@@ -1,0 +1,193 @@
+//! Figures of the picture, or of A and B, in tables: of all of it, against the reference, of a
+//! rectangle.
+
+use egui::{Grid, RichText, Ui};
+
+use super::noise_plot::{self, COLORS, Plotted};
+use crate::app::compare::reference::{Measure, Yardstick};
+use crate::app::compare::region_figures::Part;
+use crate::app::panels::{Panel, explain};
+use crate::app::ui::theme::color;
+use crate::app::ui::widgets::{row, segments};
+use crate::format::rounded;
+use crate::image::export;
+use crate::image::metrics::Errors;
+use crate::render::Area;
+use crate::render::compare::{NoiseHistory, Side};
+
+/// Width of a column of figures.
+const FIGURE: f32 = 52.0;
+
+/// A column: what stands above it, what that means, and a cell a picture.
+pub struct Column {
+    heading: &'static str,
+    help: &'static str,
+    cells: Vec<String>,
+}
+
+impl Column {
+    /// How many cells it has.
+    pub fn count(&self) -> usize {
+        self.cells.len()
+    }
+
+    /// What it means.
+    pub fn help(&self) -> &'static str {
+        self.help
+    }
+
+    /// A cell with what it is.
+    pub fn in_words(&self, index: usize) -> String {
+        let cell = self.cells.get(index).map_or("–", String::as_str);
+        format!("{} {cell}", self.heading)
+    }
+}
+
+/// Samples, time and noise.
+pub fn of_sides(sides: &[Side]) -> Vec<Column> {
+    let column = |heading, help, cell: fn(&Side) -> String| Column {
+        heading,
+        help,
+        cells: sides.iter().map(cell).collect(),
+    };
+    vec![
+        column("spp", "Samples per pixel.", |side| rounded(side.samples_per_pixel, 3)),
+        column("CPU time", "Time of all sampling threads together.", |side| {
+            format!("{} s", rounded(side.cpu_seconds, 3))
+        }),
+        noise(sides),
+    ]
+}
+
+fn noise(sides: &[Side]) -> Column {
+    let help = "The standard error of the picture relative to its brightness.";
+    Column { heading: "noise", help, cells: sides.iter().map(noise_with_error).collect() }
+}
+
+/// Noise in percent with its standard error, which is half the relative one of the variance.
+fn noise_with_error(side: &Side) -> String {
+    let (Some(noise), Some(variance), Some(error)) =
+        (side.noise, side.variance_of_mean, side.variance_error)
+    else {
+        return "–".to_owned();
+    };
+    let error = if variance > 0.0 { 0.5 * error / variance } else { 0.0 };
+    format!("{} ± {} %", rounded(100.0 * noise, 3), rounded(100.0 * noise * error, 1))
+}
+
+/// Errors against the reference, over an area or over all.
+pub fn of_errors(errors: &[Errors], area: Option<Area>) -> Vec<Column> {
+    let column = |measure: Measure, help| Column {
+        heading: measure.name(),
+        help,
+        cells: errors.iter().map(|errors| rounded(measure.mean(errors, area), 3)).collect(),
+    };
+    vec![
+        column(Measure::RelMse, "The relative mean squared error, in linear light."),
+        column(
+            Measure::Flip,
+            "What somebody notices who flips between the displayed pictures: 0 nothing, 1 all.",
+        ),
+    ]
+}
+
+/// Of a rectangle: the noise, and the errors where there are any.
+pub fn of_part(part: &Part, errors: Option<&[Errors]>) -> Vec<Column> {
+    let mut columns = vec![noise(&part.sides)];
+    if let Some(errors) = errors {
+        columns.extend(of_errors(errors, Some(part.area)));
+    }
+    columns
+}
+
+/// The columns as a table to be drawn, `corner` above the names of its rows.
+pub fn table(corner: &str, names: &[&str], columns: &[Column]) -> export::Table {
+    let headings = columns.iter().map(|column| column.heading.to_owned());
+    let rows = names.iter().enumerate().map(|(index, name)| {
+        let cells = columns.iter().filter_map(|column| column.cells.get(index).cloned());
+        std::iter::once((*name).to_owned()).chain(cells).collect()
+    });
+    export::Table {
+        headings: std::iter::once(corner.to_owned()).chain(headings).collect(),
+        rows: rows.collect(),
+    }
+}
+
+/// What a rectangle is called.
+pub fn rectangle_title(area: &Area) -> String {
+    format!("Rectangle of {} × {} pixels", area.size.x, area.size.y)
+}
+
+/// The names of the rows.
+pub fn names(count: usize) -> &'static [&'static str] {
+    if count > 1 { &["A", "B"] } else { &[""] }
+}
+
+/// Shows what is known of A and B, and how noise and errors went down. Of one picture the rest
+/// stands below it.
+pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
+    let duel = panel.duel;
+    let both = duel.comparison();
+    if let Some(both) = both {
+        let errors = panel.yardstick.errors();
+        grid(ui, "sides", &of_sides(&both.sides));
+        if let Some(errors) = errors {
+            grid(ui, "errors", &of_errors(errors, None));
+        }
+        if let Some(part) = duel.part() {
+            explain(ui, &rectangle_title(&part.area));
+            grid(ui, "rectangle", &of_part(part, errors));
+        }
+    }
+    if both.is_some() || panel.yardstick.held().is_some() {
+        over_time(ui, panel.yardstick, both.map(|_| duel.histories()));
+    }
+}
+
+fn grid(ui: &mut Ui, id: &str, columns: &[Column]) {
+    let count = columns.first().map_or(0, |column| column.cells.len());
+    Grid::new(id).num_columns(columns.len() + 1).min_col_width(FIGURE).show(ui, |ui| {
+        ui.label("");
+        for column in columns {
+            let text = RichText::new(column.heading).small().color(color::TEXT_DIM);
+            ui.label(text).on_hover_text(column.help);
+        }
+        ui.end_row();
+        for (index, (name, tint)) in std::iter::zip(names(count), COLORS).enumerate() {
+            ui.label(RichText::new(*name).color(tint));
+            for cell in columns.iter().filter_map(|column| column.cells.get(index)) {
+                ui.label(cell);
+            }
+            ui.end_row();
+        }
+    });
+}
+
+/// How noise and errors went down; `noise` is that of A and B where there are two.
+fn over_time(ui: &mut Ui, yardstick: &mut Yardstick, noise: Option<&[NoiseHistory; 2]>) {
+    let errors = Measure::ALL.map(Plotted::Error);
+    let first = noise.map(|_| Plotted::Noise);
+    let mut all: Vec<Plotted> = first.into_iter().collect();
+    if yardstick.held().is_some() {
+        all.extend(errors);
+    }
+    let place = all.iter().position(|plotted| *plotted == yardstick.plotted).unwrap_or(0);
+    if all.len() > 1 {
+        let choices: Vec<(&str, &str)> =
+            all.iter().map(|plotted| (plotted.name(), plotted.help())).collect();
+        let help = "What is plotted over the time spent.";
+        if let Some(index) =
+            row(ui, "Over time", help, |ui| segments(ui, &choices, Some(place))).inner
+        {
+            yardstick.plotted = all[index];
+        }
+    }
+    let Some(&plotted) = all.get(place) else { return };
+    match (plotted, noise) {
+        (Plotted::Noise, Some(noise)) => noise_plot::show(ui, noise.each_ref(), plotted),
+        (Plotted::Noise, None) => {}
+        (Plotted::Error(measure), _) => {
+            noise_plot::show(ui, yardstick.histories(measure), plotted);
+        }
+    }
+}

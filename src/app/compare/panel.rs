@@ -1,0 +1,245 @@
+//! The two sides of a comparison: which one is edited, how both are shown, what is known of them.
+
+use egui::{RichText, Ui};
+
+use super::figures;
+use crate::app::command::Command;
+use crate::app::compare::maps::{Difference, Noise};
+use crate::app::compare::reference::Measure;
+use crate::app::compare::second_side::{Duel, FLIP, Layout};
+use crate::app::document::{Document, Side, strategy_name};
+use crate::app::panels::Panel;
+use crate::app::ui::theme::color;
+use crate::app::ui::widgets::{capitalized, key_of, row, segments};
+use crate::render::compare::{Comparison, Verdict};
+use crate::render::turns::Share;
+
+/// Shows which side is edited, and how to begin or end a comparison.
+pub fn sides(ui: &mut Ui, panel: &mut Panel<'_>) {
+    if panel.duel.stored.is_some() {
+        return stored(ui, panel);
+    }
+    let Some(compared) = panel.editor.document.compared else {
+        button(ui, panel, Command::Compare, "Compare two strategies");
+        return figures::show(ui, panel);
+    };
+    let names = [Side::A, Side::B].map(|side| name(side, &panel.editor.document, panel.duel));
+    let help = "The side that toggles and choices act on.";
+    let choices = [(names[0].as_str(), help), (names[1].as_str(), help)];
+    let chosen = usize::from(compared.active == Side::B);
+    let clicked = row(ui, "Edited side", help, |ui| segments(ui, &choices, Some(chosen))).inner;
+    if clicked.is_some_and(|index| index != chosen) {
+        panel.commands.push(Command::SwitchSide);
+    }
+    if let Some(text) = bias(&panel.editor.document, panel.duel) {
+        let help = "Ray marching is on there: its picture will never be quite right.";
+        ui.label(RichText::new(text).color(color::WARNING)).on_hover_text(help);
+    }
+    shares(ui, panel);
+    ui.horizontal(|ui| {
+        for (command, text) in [
+            (Command::SwapSides, "Swap"),
+            (Command::CopySide, "Copy to other side"),
+            (Command::Compare, "End"),
+        ] {
+            button(ui, panel, command, text);
+        }
+    });
+    figures::show(ui, panel);
+    ui.separator();
+}
+
+/// Shows what the live picture is compared with, where that is a snapshot.
+fn stored(ui: &mut Ui, panel: &mut Panel<'_>) {
+    let titles =
+        [Side::A, Side::B].map(|side| side_title(side, &panel.editor.document, panel.duel));
+    titles.iter().for_each(|title| {
+        ui.add(egui::Label::new(RichText::new(title).color(color::TEXT_STRONG)).truncate());
+    });
+    ui.horizontal(|ui| {
+        for (command, text) in [(Command::SwapSides, "Swap"), (Command::Compare, "End")] {
+            button(ui, panel, command, text);
+        }
+    });
+    figures::show(ui, panel);
+    ui.separator();
+}
+
+fn button(ui: &mut Ui, panel: &mut Panel<'_>, command: Command, text: &str) {
+    let help = format!("{}  [{}]", command.tooltip(), key_of(ui, command));
+    if ui.button(text).on_hover_text(help).clicked() {
+        panel.commands.push(command);
+    }
+}
+
+/// A side with the name of its strategy, or of the snapshot that it is.
+fn name(side: Side, document: &Document, duel: &Duel) -> String {
+    let letter = if side == Side::A { "A" } else { "B" };
+    match &duel.stored {
+        Some(stored) if stored.side == side => format!("{letter}  Snapshot {}", stored.name),
+        Some(_) => format!("{letter}  Live: {}", strategy_name(&document.settings.strategy)),
+        None => format!("{letter}  {}", capitalized(strategy_name(&document.strategy_of(side)))),
+    }
+}
+
+/// The same; of a biased side with that.
+pub fn side_title(side: Side, document: &Document, duel: &Duel) -> String {
+    let bias = if is_biased(side, document, duel) { ", biased" } else { "" };
+    format!("{}{bias}", name(side, document, duel))
+}
+
+/// Whether a side shows a picture that will never be quite right.
+pub fn is_biased(side: Side, document: &Document, duel: &Duel) -> bool {
+    match &duel.stored {
+        Some(stored) if stored.side == side => stored.is_biased,
+        Some(_) => document.settings.strategy.is_biased(),
+        None => document.strategy_of(side).is_biased(),
+    }
+}
+
+/// Says of pictures that will never be quite right which of two that are.
+pub fn bias(document: &Document, duel: &Duel) -> Option<&'static str> {
+    match [Side::A, Side::B].map(|side| is_biased(side, document, duel)) {
+        [false, false] => None,
+        _ if !duel.is_on() => Some("biased"),
+        [true, false] => Some("A is biased"),
+        [false, true] => Some("B is biased"),
+        [true, true] => Some("A and B are biased"),
+    }
+}
+
+/// What both sides get equal shares of, and their seeds.
+fn shares(ui: &mut Ui, panel: &mut Panel<'_>) {
+    let Some(compared) = &mut panel.editor.document.compared else { return };
+    let choices = [
+        ("Time", "Both sides get the same CPU time: what is the picture worth after so long?"),
+        ("Samples", "Both sides get the same samples: what is a sample worth?"),
+    ];
+    let chosen = usize::from(compared.share == Share::Samples);
+    let help = "What both sides get equal shares of.";
+    let clicked = row(ui, "Equal", help, |ui| segments(ui, &choices, Some(chosen))).inner;
+    let mut edit = None;
+    if let Some(index) = clicked {
+        compared.share = [Share::CpuTime, Share::Samples][index];
+        edit = Some("equal shares");
+    }
+    let help = "B draws other random numbers than A. Without, noise that both share hides in their \
+                difference.";
+    if ui.checkbox(&mut compared.own_seed, "Own seed for B").on_hover_text(help).changed() {
+        edit = Some("own seed");
+    }
+    if let Some(name) = edit {
+        panel.editor.name_edit(name);
+    }
+}
+
+/// Chooses among the `kinds` of views that there are of both sides, or of one picture.
+pub fn layouts(ui: &mut Ui, layout: &mut Layout, (kinds, of_two): (&[Layout], bool)) {
+    let choices: Vec<(&str, String)> = kinds.iter().map(|kind| in_words(*kind, of_two)).collect();
+    let choices: Vec<(&str, &str)> =
+        choices.iter().map(|(name, help)| (*name, help.as_str())).collect();
+    let chosen = kinds.iter().position(|kind| kind.kind() == layout.kind());
+    if let Some(index) = segments(ui, &choices, chosen.or(Some(0))) {
+        *layout = kinds[index];
+    }
+    if chosen.is_some() {
+        finer(ui, layout, of_two);
+    }
+}
+
+/// What a kind of view is called and what it shows.
+fn in_words(kind: Layout, of_two: bool) -> (&'static str, String) {
+    let flip = format!(" Hold {} to see the other side.", FLIP.name());
+    match kind {
+        Layout::Wipe if !of_two => ("Picture", "The picture itself.".to_owned()),
+        Layout::Wipe => ("Wipe", format!("A left of the divider, B right of it; drag it.{flip}")),
+        Layout::Beside => {
+            ("Side by side", format!("A and B beside each other; zoom and moves go to both.{flip}"))
+        }
+        Layout::Difference(_) => (
+            "Difference",
+            "Where and how A and B differ: nothing but noise, if both are right.".to_owned(),
+        ),
+        Layout::Noise(_) => {
+            ("Noise", "How noisy each pixel is: the standard error of its gray value.".to_owned())
+        }
+        Layout::Error(..) => ("Error", "How far each pixel is from the reference.".to_owned()),
+    }
+}
+
+/// The finer choices of a view.
+fn finer(ui: &mut Ui, layout: &mut Layout, of_two: bool) {
+    match layout {
+        Layout::Wipe | Layout::Beside => {}
+        Layout::Difference(difference) => {
+            let all = [Difference::Signed, Difference::Absolute, Difference::Relative];
+            let choices = [
+                ("Signed", "B - A: orange where B is brighter, blue where it is darker."),
+                ("Absolute", "How far B is from A."),
+                ("Relative", "How far B is from A, relative to how bright they are."),
+            ];
+            pick(ui, difference, all, choices);
+        }
+        Layout::Noise(noise) => {
+            let all = [Noise::Of(Side::A), Noise::Of(Side::B), Noise::Ratio];
+            let choices = [
+                ("A", "The noise of A."),
+                ("B", "The noise of B."),
+                ("B / A", "The noise of B over that of A: blue where B is less noisy."),
+            ];
+            pick(ui, noise, all, choices);
+        }
+        Layout::Error(measure, side) => {
+            let choices = [
+                ("Squared error", "In linear light, relative to the reference squared: relMSE."),
+                ("FLIP map", "What somebody notices who flips between the displayed pictures."),
+            ];
+            pick(ui, measure, Measure::ALL, choices);
+            if of_two {
+                let choices = [("A", "The error of A."), ("B", "The error of B.")];
+                pick(ui, side, [Side::A, Side::B], choices);
+            }
+        }
+    }
+}
+
+fn pick<T: Copy + PartialEq, const N: usize>(
+    ui: &mut Ui,
+    value: &mut T,
+    all: [T; N],
+    choices: [(&str, &str); N],
+) {
+    ui.separator();
+    let chosen = all.iter().position(|other| other == value);
+    if let Some(index) = segments(ui, &choices, chosen) {
+        *value = all[index];
+    }
+}
+
+/// Says which side is faster, and whether they show the same picture; `biased` says which ones are.
+pub fn verdict(ui: &mut Ui, comparison: Option<&Comparison>, biased: [bool; 2]) {
+    let Some(comparison) = comparison else {
+        ui.label(RichText::new("Waiting for both sides …").color(color::TEXT_DIM));
+        return;
+    };
+    ui.label(RichText::new(comparison.sentence()).color(color::TEXT_STRONG)).on_hover_text(
+        "From variance times CPU time of both sides. The less is known, the fewer digits.",
+    );
+    if let Some(text) = disagreement(comparison, biased) {
+        let help = "A difference stands out from the noise that chance would bring once in a \
+                    thousand comparisons. Only ray marching should do that.";
+        ui.label(RichText::new(text).color(color::WARNING)).on_hover_text(help);
+    }
+}
+
+/// That both sides show different pictures, where they do, and which of them is biased.
+pub fn disagreement(comparison: &Comparison, biased: [bool; 2]) -> Option<String> {
+    let who = match biased {
+        [false, false] => "",
+        [true, false] => " A is biased.",
+        [false, true] => " B is biased.",
+        [true, true] => " Both are biased.",
+    };
+    let differ = comparison.agreement.verdict == Verdict::Differ;
+    differ.then(|| format!("A and B show different pictures.{who}"))
+}

@@ -1,0 +1,350 @@
+//! What pictures are measured against: a reference, the errors of what is shown, and how they went
+//! down.
+
+mod load;
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use egui::Context;
+use glam::UVec2;
+
+pub use load::{Held, Origin};
+
+use super::maps::{Map, MapKind};
+use super::noise_plot::Plotted;
+use crate::app::document::Side;
+use crate::app::jobs::background::Background;
+use crate::error::Result;
+use crate::image::metrics::{ErrorMap, Errors, Viewing};
+use crate::image::tone::Tone;
+use crate::render::compare::NoiseHistory;
+use crate::render::pool::{Pool, Priority};
+use crate::render::{Area, Picture};
+use load::Loading;
+
+/// Measuring rests so many times as long as it took, for the machine is there to render.
+const REST: u32 = 9;
+
+/// How an error is measured.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Measure {
+    /// Squared errors in linear light, relative to the reference.
+    #[default]
+    RelMse,
+    /// What somebody notices who flips between the displayed pictures.
+    Flip,
+}
+
+impl Measure {
+    /// Both of them.
+    pub const ALL: [Self; 2] = [Self::RelMse, Self::Flip];
+
+    /// What it is called.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::RelMse => "relMSE",
+            Self::Flip => "FLIP",
+        }
+    }
+
+    /// The errors of this kind.
+    pub fn of(self, errors: &Errors) -> &ErrorMap {
+        match self {
+            Self::RelMse => &errors.rel_mse,
+            Self::Flip => &errors.flip,
+        }
+    }
+
+    /// Their mean over an area, or over all.
+    pub fn mean(self, errors: &Errors, area: Option<Area>) -> f64 {
+        let map = self.of(errors);
+        area.map_or(map.mean, |area| map.mean_of(area.first, area.size))
+    }
+}
+
+/// What is measured: one picture, or those of A and B.
+#[derive(Clone)]
+struct Task {
+    held: Arc<Held>,
+    pictures: Vec<Arc<Picture>>,
+    tone: Tone,
+}
+
+impl Task {
+    fn same(&self, other: &Self) -> bool {
+        let pairs = || std::iter::zip(&self.pictures, &other.pictures);
+        self.is_like(other) && pairs().all(|(a, b)| Arc::ptr_eq(a, b))
+    }
+
+    /// Whether only time has passed between the two.
+    fn is_like(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.held, &other.held)
+            && self.tone == other.tone
+            && self.pictures.len() == other.pictures.len()
+    }
+
+    fn measure(&self) -> Measured {
+        let begun = Instant::now();
+        let pixels: Vec<&[[f32; 4]]> =
+            self.pictures.iter().map(|picture| picture.pixels.as_slice()).collect();
+        let viewing = Viewing { tone: self.tone, ..Viewing::default() };
+        let errors = Errors::of(&pixels, &self.held.reference, viewing).unwrap_or_default();
+        Measured { errors: Arc::new(errors), took: begun.elapsed(), ended: Instant::now() }
+    }
+}
+
+/// How what is measured is looked at.
+#[derive(Clone, Copy, Debug)]
+pub struct Seen {
+    /// How it is shown.
+    pub tone: Tone,
+    /// The side of the main engine, where there are two.
+    pub main: Option<Side>,
+    /// The side that is a snapshot, where one is.
+    pub stored: Option<Side>,
+    /// Whether the one picture is a snapshot.
+    pub is_snapshot: bool,
+}
+
+/// What came of it; no errors where pictures and reference do not fit together.
+struct Measured {
+    errors: Arc<Vec<Errors>>,
+    took: Duration,
+    ended: Instant,
+}
+
+impl Measured {
+    /// How long nothing should be measured after it.
+    fn rest(&self) -> Duration {
+        (REST * self.took).saturating_sub(self.ended.elapsed())
+    }
+}
+
+/// Which map of the errors is wanted: how measured, of which picture.
+#[derive(Clone)]
+struct MapTask {
+    errors: Arc<Vec<Errors>>,
+    measure: Measure,
+    index: usize,
+    /// Whose map it is, where there are two.
+    side: Option<Side>,
+}
+
+/// The reference and what is measured against it.
+pub struct Yardstick {
+    /// The threads that measure, which give way to the window's.
+    pool: Arc<Pool>,
+    held: Option<Arc<Held>>,
+    loading: Option<Loading>,
+    /// The scene that is open, and the files of the references of it and of others, the one that was
+    /// loaded last first.
+    scene: String,
+    remembered: Vec<(String, PathBuf)>,
+    errors: Background<Task, Measured>,
+    map: Background<MapTask, Option<Map>>,
+    /// How relMSE and FLIP of both sides went down.
+    histories: [[NoiseHistory; 2]; 2],
+    noted: Option<Instant>,
+    /// What the panel plots over time.
+    pub plotted: Plotted,
+    /// The tone that FLIP's histories are of, and the side in the first of them.
+    tone: Tone,
+    main: Option<Side>,
+}
+
+impl Yardstick {
+    /// Without a reference, but with the files of those of some scenes; `threads` will measure
+    /// (`None`: one a core).
+    ///
+    /// # Errors
+    /// When the system refuses to start them.
+    pub fn new(threads: Option<usize>, remembered: Vec<(String, PathBuf)>) -> Result<Self> {
+        Ok(Self {
+            pool: Arc::new(Pool::new(threads, Priority::Background)?),
+            held: None,
+            loading: None,
+            scene: String::new(),
+            remembered,
+            errors: Background::default(),
+            map: Background::default(),
+            histories: Default::default(),
+            noted: None,
+            plotted: Plotted::default(),
+            tone: Tone::default(),
+            main: None,
+        })
+    }
+
+    /// The reference.
+    pub fn held(&self) -> Option<&Arc<Held>> {
+        self.held.as_ref()
+    }
+
+    /// Whether a reference is on its way.
+    pub fn is_loading(&self) -> bool {
+        self.loading.is_some()
+    }
+
+    /// Takes a reference from there, in place of the one there is once that has come to its end.
+    ///
+    /// # Errors
+    /// When the system refuses to start a thread.
+    pub fn load(&mut self, ctx: &Context, origin: Origin) -> Result<()> {
+        let wake = ctx.clone();
+        self.loading = Some(Loading::start(origin, move || wake.request_repaint())?);
+        Ok(())
+    }
+
+    /// Takes the reference away.
+    pub fn remove(&mut self) {
+        self.forget();
+        self.remember(None);
+    }
+
+    /// The files of the references of scenes, the one that was loaded last first.
+    pub fn remembered(&self) -> &[(String, PathBuf)] {
+        &self.remembered
+    }
+
+    fn remember(&mut self, file: Option<&Path>) {
+        self.remembered.retain(|(scene, _)| *scene != self.scene);
+        if let Some(file) = file {
+            let file = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
+            self.remembered.insert(0, (self.scene.clone(), file));
+        }
+    }
+
+    fn forget(&mut self) {
+        self.held = None;
+        self.loading = None;
+        self.histories = Default::default();
+    }
+
+    /// Notes that another scene is open, which brings the reference along that was loaded for it
+    /// when it was open before.
+    ///
+    /// # Errors
+    /// As [`Self::load`].
+    pub fn open(&mut self, ctx: &Context, scene: &str) -> Result<()> {
+        if self.scene == scene {
+            return Ok(());
+        }
+        self.forget();
+        scene.clone_into(&mut self.scene);
+        match self.remembered.iter().find(|(other, _)| other == scene) {
+            Some((_, path)) => self.load(ctx, Origin::file(path.clone())),
+            None => Ok(()),
+        }
+    }
+
+    /// Takes in a reference that has come; says where that failed.
+    pub fn poll(&mut self) -> Result<()> {
+        let Some(result) = self.loading.as_ref().and_then(Loading::poll) else { return Ok(()) };
+        self.loading = None;
+        let held = result.inspect_err(|_| self.remember(None))?;
+        self.remember(held.path.as_deref());
+        self.held = Some(Arc::new(held));
+        self.histories = Default::default();
+        Ok(())
+    }
+
+    /// Whether it is of another size than pictures of `size`.
+    pub fn is_of_another_size(&self, size: UVec2) -> bool {
+        self.held.as_ref().is_some_and(|held| held.reference.matches(size).is_err())
+    }
+
+    /// Brings the errors in line with what is looked at, one picture or those of A and B.
+    pub fn update(&mut self, ctx: &Context, pictures: Vec<Arc<Picture>>, seen: Seen) {
+        match (std::mem::replace(&mut self.main, seen.main), seen.main) {
+            (then, now) if then == now => {}
+            (Some(_), Some(_)) => self.histories.swap(0, 1),
+            _ => self.histories = Default::default(),
+        }
+        let tone = seen.tone;
+        if std::mem::replace(&mut self.tone, tone) != tone {
+            self.histories.iter_mut().for_each(|side| side[1] = NoiseHistory::default());
+        }
+        let fits = |picture: &Arc<Picture>| !self.is_of_another_size(picture.size);
+        let has_all = !pictures.is_empty() && pictures.iter().all(fits);
+        let task = self.held.clone().filter(|_| has_all);
+        let task = task.map(|held| Task { held, pictures, tone });
+        let task = task.and_then(|task| self.in_time(ctx, task));
+        let (wake, pool) = (ctx.clone(), self.pool.clone());
+        let measure = move |task: &Task| pool.install(|| task.measure());
+        self.errors.update(task, Task::same, measure, move || wake.request_repaint());
+        self.note(seen);
+    }
+
+    /// What should be measured now: `task`, or what was measured last while that rests.
+    fn in_time(&self, ctx: &Context, task: Task) -> Option<Task> {
+        let done = self.errors.done().filter(|(done, _)| done.is_like(&task));
+        let is_rough = task.pictures.iter().any(|picture| !picture.complete);
+        match done {
+            Some((done, _)) if is_rough => Some(done.clone()),
+            None if is_rough => None,
+            Some((done, measured)) if !done.same(&task) && !measured.rest().is_zero() => {
+                ctx.request_repaint_after(measured.rest());
+                Some(done.clone())
+            }
+            _ => Some(task),
+        }
+    }
+
+    /// Adds new errors to the histories. A snapshot has no past: one that is a side is a point.
+    fn note(&mut self, seen: Seen) {
+        let Some((task, measured)) = self.errors.done() else { return };
+        if self.noted.replace(measured.ended) == Some(measured.ended) || seen.is_snapshot {
+            return;
+        }
+        let sides = std::iter::zip(&task.pictures, measured.errors.iter());
+        let sides = std::iter::zip([Side::A, Side::B], sides);
+        for (history, (side, (picture, errors))) in self.histories.iter_mut().zip(sides) {
+            if seen.stored == Some(side) {
+                *history = Default::default();
+            }
+            for (history, measure) in history.iter_mut().zip(Measure::ALL) {
+                history.follow(picture.stats.cpu_seconds, measure.mean(errors, None));
+            }
+        }
+    }
+
+    /// The errors of what is looked at, one or two, once they are there.
+    pub fn errors(&self) -> Option<&[Errors]> {
+        let (_, measured) = self.errors.done()?;
+        Some(measured.errors.as_slice()).filter(|errors| !errors.is_empty())
+    }
+
+    /// How the errors of A and of B went down.
+    pub fn histories(&self, measure: Measure) -> [&NoiseHistory; 2] {
+        let index = usize::from(measure == Measure::Flip);
+        self.histories.each_ref().map(|side| &side[index])
+    }
+
+    /// Brings the map in line with what is wanted: how measured, of which side where there are two.
+    pub fn update_map(&mut self, ctx: &Context, wanted: Option<(Measure, Option<Side>)>) {
+        let measured = self.errors.done().map(|(_, measured)| measured.errors.clone());
+        let task = wanted.zip(measured).and_then(|((measure, side), errors)| {
+            let index = usize::from(side == Some(Side::B));
+            (index < errors.len()).then_some(MapTask { errors, measure, index, side })
+        });
+        let same = |a: &MapTask, b: &MapTask| {
+            let same_map = Arc::ptr_eq(&a.errors, &b.errors) && a.measure == b.measure;
+            same_map && a.index == b.index && a.side == b.side
+        };
+        let make = |task: &MapTask| {
+            let errors = task.errors.get(task.index)?;
+            let kind = MapKind::Error(task.measure, task.side);
+            Map::of_errors(kind, task.measure.of(errors))
+        };
+        let wake = ctx.clone();
+        self.map.update(task, same, make, move || wake.request_repaint());
+    }
+
+    /// That map, once it is there.
+    pub fn map(&self, measure: Measure, side: Option<Side>) -> Option<&Map> {
+        let (task, map) = self.map.done()?;
+        map.as_ref().filter(|_| task.measure == measure && task.side == side)
+    }
+}

@@ -1,0 +1,156 @@
+//! Rows under the picture: the rectangle and the reference, with what is known of them.
+
+use egui::{DragValue, RichText, Ui};
+use glam::UVec2;
+
+use super::figures::{Column, names, of_errors, of_part};
+use super::panel;
+use crate::app::command::Command;
+use crate::app::compare::reference::Yardstick;
+use crate::app::compare::region_figures::Part;
+use crate::app::picture::region::Rectangle;
+use crate::app::ui::theme::{color, space};
+use crate::app::ui::widgets::key_of;
+use crate::image::metrics::Errors;
+use crate::render::Area;
+use crate::scene::Settings;
+
+/// Width of a field for pixels.
+const FIELD: f32 = 48.0;
+
+/// What a row asks for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Asked {
+    /// A command.
+    Command(Command),
+    /// The film to take the size of the reference.
+    Size(UVec2),
+}
+
+/// Shows the rectangle on pictures of `size` and what is known of it; `biased` says which sides are.
+pub fn rectangle(
+    ui: &mut Ui,
+    rectangle: &mut Rectangle,
+    size: UVec2,
+    (part, errors, biased): (Option<&Part>, Option<&[Errors]>, [bool; 2]),
+) {
+    let Some(area) = rectangle.area(size) else {
+        ui.label(RichText::new("Drag a rectangle over the picture.").color(color::ACCENT));
+        let help = "Put it into the middle, from where numbers move it.";
+        if ui.button("Place it").on_hover_text(help).clicked() {
+            rectangle.set(Area { first: size / 3, size: size / 3 }, size);
+        }
+        if ui.button("Cancel").on_hover_text("Draw none.  [Esc]").clicked() {
+            rectangle.remove();
+        }
+        return;
+    };
+    ui.label(RichText::new("Rectangle").color(color::TEXT_STRONG));
+    if let Some(area) = fields(ui, area, size) {
+        rectangle.set(area, size);
+    }
+    if ui.button("Remove").on_hover_text("Take the rectangle away.  [Esc]").clicked() {
+        rectangle.remove();
+    }
+    let alone = Command::SamplesHere;
+    let help = format!("{}  [{}]", alone.tooltip(), key_of(ui, alone));
+    ui.toggle_value(&mut rectangle.is_alone, "Samples only here").on_hover_text(help);
+    let Some(part) = part else { return };
+    match &part.comparison {
+        Some(comparison) => panel::verdict(ui, Some(comparison), biased),
+        None => told(ui, &of_part(part, errors)),
+    }
+}
+
+/// Numbers to move and size it by; the rectangle that they say, where one was changed.
+fn fields(ui: &mut Ui, area: Area, size: UVec2) -> Option<Area> {
+    let mut numbers = [area.first.x, area.first.y, area.size.x, area.size.y];
+    let room = size.saturating_sub(area.first);
+    let most = [size.x.saturating_sub(1), size.y.saturating_sub(1), room.x, room.y];
+    let least = [0, 0, 1, 1];
+    let words = [
+        ("Rectangle x", "Its first column."),
+        ("Rectangle y", "Its first row, 0 on top."),
+        ("Rectangle width", "Its width in pixels."),
+        ("Rectangle height", "Its height in pixels."),
+    ];
+    let mut changed = false;
+    for (index, (name, help)) in words.into_iter().enumerate() {
+        if index == 2 {
+            ui.label(RichText::new("size").color(color::TEXT_DIM));
+        }
+        let field = DragValue::new(&mut numbers[index]).range(least[index]..=most[index].max(1));
+        let field = ui.add_sized([FIELD, space::ROW_HEIGHT], field).accessible_name(name);
+        changed |= field.on_hover_text(help).changed();
+    }
+    ui.label(RichText::new("pixels").color(color::TEXT_DIM));
+    let [x, y, width, height] = numbers;
+    let area = Area { first: UVec2::new(x, y), size: UVec2::new(width, height) };
+    changed.then_some(area)
+}
+
+/// Figures of one picture or two in a line.
+fn told(ui: &mut Ui, columns: &[Column]) {
+    let count = columns.first().map_or(0, Column::count);
+    for (index, name) in names(count).iter().enumerate() {
+        if !name.is_empty() {
+            ui.label(RichText::new(*name).color(color::TEXT_DIM));
+        }
+        for column in columns {
+            ui.label(RichText::new(column.in_words(index)).color(color::TEXT_STRONG))
+                .on_hover_text(column.help());
+        }
+    }
+}
+
+/// Says that a snapshot of `size` and the live picture have different sizes.
+pub fn other_size(ui: &mut Ui, size: UVec2) -> Option<Asked> {
+    let text = format!("The snapshot has {} × {} pixels, the live picture others.", size.x, size.y);
+    ui.label(RichText::new(text).color(color::WARNING));
+    take_size(ui, size)
+}
+
+fn take_size(ui: &mut Ui, size: UVec2) -> Option<Asked> {
+    let help = "Render the picture at that size; the film keeps it.";
+    let clicked = ui.button("Take its size").on_hover_text(help).clicked();
+    clicked.then_some(Asked::Size(size))
+}
+
+/// Shows the reference for pictures of `size`, rendered with `settings`, and how far off they are.
+pub fn reference(
+    ui: &mut Ui,
+    yardstick: &Yardstick,
+    (size, settings): (UVec2, &Settings),
+) -> Option<Asked> {
+    let mut asked = None;
+    ui.label(RichText::new("Reference").color(color::TEXT_STRONG));
+    let Some(held) = yardstick.held() else {
+        ui.label(RichText::new("Loading …").color(color::ACCENT));
+        return None;
+    };
+    let of = held.reference.size();
+    ui.add(egui::Label::new(RichText::new(&held.name).color(color::TEXT)).truncate());
+    let remove = Command::RemoveReference;
+    let help = format!("{}  [{}]", remove.tooltip(), key_of(ui, remove));
+    if ui.button("Remove").on_hover_text(help).clicked() {
+        asked = Some(Asked::Command(remove));
+    }
+    if yardstick.is_of_another_size(size) {
+        let text =
+            format!("It has {} × {} pixels and the picture {} × {}.", of.x, of.y, size.x, size.y);
+        ui.label(RichText::new(text).color(color::WARNING));
+        return take_size(ui, of).or(asked);
+    }
+    if let Some(doubt) = held.doubt(settings) {
+        let text = format!("Errors say little: {doubt}.");
+        ui.label(RichText::new(text).color(color::WARNING))
+            .on_hover_text("The reference is known to show something else than this picture.");
+    }
+    match yardstick.errors() {
+        Some(errors) => told(ui, &of_errors(errors, None)),
+        None => {
+            ui.label(RichText::new("Measuring …").color(color::TEXT_DIM));
+        }
+    }
+    asked
+}

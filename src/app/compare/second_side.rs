@@ -1,0 +1,392 @@
+//! Two strategies on one scene: the engine of the second one, the machine shared fairly between
+//! both, and what is shown of them.
+
+use std::sync::Arc;
+
+use egui::{Context, Key};
+use glam::UVec2;
+
+use super::maps::{Difference, Map, MapKind, Noise};
+use super::reference::Measure;
+use super::region_figures::{Part, PartTask};
+use crate::app::document::{Compared, Document, Side};
+use crate::app::jobs::background::Background;
+use crate::app::jobs::live_render::{Engine, News};
+use crate::app::picture::display::Look;
+use crate::app::picture::viewport::Shown;
+use crate::error::Result;
+use crate::render::compare::{Comparison, NoiseHistory};
+use crate::render::session::{Seat, Sharing};
+use crate::render::{Area, Layer, Picture};
+
+/// The key that shows the other side while it is held.
+pub const FLIP: Key = Key::H;
+
+/// How A and B are shown.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Layout {
+    /// One over the other, with a divider.
+    #[default]
+    Wipe,
+    /// Beside each other.
+    Beside,
+    /// How they differ.
+    Difference(Difference),
+    /// How noisy they are.
+    Noise(Noise),
+    /// How far one of them is from the reference.
+    Error(Measure, Side),
+}
+
+impl Layout {
+    /// One of each kind; the last one needs a reference.
+    pub const ALL: [Self; 5] = [
+        Self::Wipe,
+        Self::Beside,
+        Self::Difference(Difference::Signed),
+        Self::Noise(Noise::Of(Side::A)),
+        Self::Error(Measure::RelMse, Side::A),
+    ];
+
+    /// The kinds that there are, of two pictures or of one, with a reference or without.
+    pub fn kinds(of_two: bool, with_reference: bool) -> Vec<Self> {
+        let mut kinds = Self::ALL.to_vec();
+        kinds.retain(|kind| match kind {
+            Self::Wipe => true,
+            Self::Error(..) => with_reference,
+            _ => of_two,
+        });
+        kinds
+    }
+
+    /// The next of some kinds.
+    pub fn next(self, kinds: &[Self]) -> Self {
+        let place = kinds.iter().position(|kind| kind.kind() == self.kind());
+        let next = place.map_or(0, |place| place + 1);
+        kinds.get(next).or(kinds.first()).copied().unwrap_or_default()
+    }
+
+    /// Its place among the kinds.
+    pub fn kind(self) -> usize {
+        match self {
+            Self::Wipe => 0,
+            Self::Beside => 1,
+            Self::Difference(_) => 2,
+            Self::Noise(_) => 3,
+            Self::Error(..) => 4,
+        }
+    }
+
+    /// What is computed for it of two pictures.
+    fn map(self) -> Option<MapKind> {
+        match self {
+            Self::Wipe | Self::Beside | Self::Error(..) => None,
+            Self::Difference(difference) => Some(MapKind::Difference(difference)),
+            Self::Noise(noise) => Some(MapKind::Noise(noise)),
+        }
+    }
+}
+
+/// A picture kept earlier, as one side against the live one.
+#[derive(Clone, Debug)]
+pub struct Stored {
+    /// The side.
+    pub side: Side,
+    /// What it is called.
+    pub name: String,
+    /// The picture with its variance, once it is read.
+    pub picture: Option<Arc<Picture>>,
+    /// Whether its strategy was biased.
+    pub is_biased: bool,
+}
+
+/// The second side and what is shown of both.
+pub struct Duel {
+    rival: Option<Engine>,
+    /// A picture kept earlier in place of the second side.
+    pub stored: Option<Stored>,
+    /// The comparison of the last frame.
+    last: Option<Compared>,
+    /// Of the two sessions while there are two.
+    seats: [Seat; 2],
+    threads: Option<usize>,
+    /// How both are shown.
+    pub layout: Layout,
+    /// Where B begins, as a share of the picture area's width.
+    pub divider: f32,
+    map: Background<Pair, Option<Map>>,
+    figures: Background<[Arc<Picture>; 2], Comparison>,
+    part: Background<PartTask, Part>,
+    /// How the noise of A and of B went down.
+    histories: [NoiseHistory; 2],
+    /// The side of the main engine when they were last added to.
+    noted: Option<Side>,
+}
+
+/// Both pictures, and what is to be made of them.
+#[derive(Clone)]
+struct Pair {
+    pictures: [Arc<Picture>; 2],
+    kind: MapKind,
+}
+
+impl Pair {
+    fn same(&self, other: &Self) -> bool {
+        let same = |i: usize| Arc::ptr_eq(&self.pictures[i], &other.pictures[i]);
+        self.kind == other.kind && same(0) && same(1)
+    }
+}
+
+impl Duel {
+    /// None yet; the second side will have `threads` workers.
+    pub fn new(threads: Option<usize>) -> Self {
+        Self {
+            rival: None,
+            stored: None,
+            last: None,
+            seats: Sharing::seats(),
+            threads,
+            layout: Layout::default(),
+            divider: 0.5,
+            map: Background::default(),
+            figures: Background::default(),
+            part: Background::default(),
+            histories: Default::default(),
+            noted: None,
+        }
+    }
+
+    /// The side of the main engine, where there are two.
+    pub fn main_side(&self) -> Option<Side> {
+        let stored = self.stored.as_ref().map(|stored| stored.side.other());
+        stored.or(self.last.map(|compared| compared.main))
+    }
+
+    /// Whether there are two sides.
+    pub fn is_on(&self) -> bool {
+        self.rival.is_some() || self.stored.is_some()
+    }
+
+    /// The engine of the side that the main one does not render, while there is one.
+    pub fn rival(&self) -> Option<&Engine> {
+        self.rival.as_ref()
+    }
+
+    /// The engine of the side that is edited, `main` being that of the main side.
+    pub fn edited<'e>(&'e self, main: &'e Engine) -> &'e Engine {
+        match (&self.rival, self.last) {
+            (Some(rival), Some(last)) if last.active != last.main => rival,
+            _ => main,
+        }
+    }
+
+    /// How many sides take turns at the machine, `main` being the engine of the main side.
+    pub fn turns(&self, main: &Engine) -> usize {
+        let is_at_work =
+            |engine: &&Engine| engine.picture().is_none_or(|picture| !picture.stats.finished);
+        std::iter::once(main).chain(self.rival()).filter(is_at_work).count()
+    }
+
+    /// Lets it wait for something else, or go on.
+    pub fn set_held(&mut self, held: bool) {
+        if let Some(rival) = &mut self.rival {
+            rival.set_held(held);
+        }
+    }
+
+    /// Gives all its samples to the pixels of `area`, or to all pixels.
+    pub fn focus(&mut self, area: Option<Area>) {
+        if let Some(rival) = &mut self.rival {
+            rival.focus(area);
+        }
+    }
+
+    /// Lets its pictures bring a layer along.
+    pub fn set_layer(&mut self, layer: Option<Layer>) {
+        if let Some(rival) = &mut self.rival {
+            rival.set_layer(layer);
+        }
+    }
+
+    /// Throws its samples away.
+    pub fn restart(&mut self) {
+        if let Some(rival) = &mut self.rival {
+            rival.restart();
+        }
+    }
+
+    /// Takes in what its threads have done.
+    pub fn poll(&mut self) -> Vec<News> {
+        self.rival.as_mut().map_or_else(Vec::new, Engine::poll)
+    }
+
+    /// Brings the other side in line with the document on a film of `size`, and both sides' turns at
+    /// the machine. Where a comparison has ended, the side that was edited goes on in `engine`.
+    ///
+    /// # Errors
+    /// When the system refuses to start threads.
+    pub fn update(
+        &mut self,
+        ctx: &Context,
+        document: &Document,
+        engine: &mut Engine,
+        size: UVec2,
+    ) -> Result<Vec<News>> {
+        let mut news = Vec::new();
+        let Some(compared) = document.compared else {
+            self.end(document, engine);
+            self.update_told(ctx, engine);
+            return Ok(news);
+        };
+        self.last = Some(compared);
+        if self.rival.is_none() {
+            if engine.built().is_none() {
+                return Ok(news);
+            }
+            let wake = ctx.clone();
+            let rival = engine.rival(self.threads, move || wake.request_repaint())?;
+            rival.session().take_seat(Some(self.seats[1].clone()));
+            engine.session().take_seat(Some(self.seats[0].clone()));
+            self.rival = Some(rival);
+        }
+        self.seats[0].set_share(compared.share);
+        let settings = document.settings_of(compared.main.other());
+        if let Some(rival) = &mut self.rival {
+            rival.set_shows_variance(true);
+            if rival.paused() != engine.paused() {
+                rival.set_paused(engine.paused());
+            }
+            if let Some(wait) = rival.update(&settings, size, &mut news) {
+                ctx.request_repaint_after(wait);
+            }
+        }
+        self.update_told(ctx, engine);
+        Ok(news)
+    }
+
+    /// Brings map and figures in line with the pictures.
+    fn update_told(&mut self, ctx: &Context, engine: &Engine) {
+        self.update_map(ctx, engine);
+        self.update_figures(ctx, engine);
+    }
+
+    /// Ends a comparison. Not where another scene was opened: that goes on where it was.
+    fn end(&mut self, document: &Document, engine: &mut Engine) {
+        let last = self.last.take();
+        let Some(mut rival) = self.rival.take() else { return };
+        let edited = last.is_some_and(|last| last.active != last.main);
+        if edited && rival.renders(&document.settings) {
+            std::mem::swap(engine, &mut rival);
+        }
+        engine.session().take_seat(None);
+    }
+
+    fn update_map(&mut self, ctx: &Context, engine: &Engine) {
+        let pictures = self.pictures(engine);
+        let pair = self.layout.map().zip(pictures).map(|(kind, pictures)| Pair { pictures, kind });
+        let wake = ctx.clone();
+        let make = |pair: &Pair| Map::new(pair.kind, &pair.pictures);
+        self.map.update(pair, Pair::same, make, move || wake.request_repaint());
+    }
+
+    fn update_figures(&mut self, ctx: &Context, engine: &Engine) {
+        let pictures =
+            self.pictures(engine).filter(|pictures| pictures[0].size == pictures[1].size);
+        self.note(pictures.as_ref());
+        // Before every pixel has a sample there is nothing to say, and to look would take time from
+        // getting there.
+        let pictures = pictures.filter(|sides| sides.iter().all(|picture| picture.complete));
+        let same = |a: &[Arc<Picture>; 2], b: &[Arc<Picture>; 2]| {
+            Arc::ptr_eq(&a[0], &b[0]) && Arc::ptr_eq(&a[1], &b[1])
+        };
+        let make = |[a, b]: &[Arc<Picture>; 2]| Comparison::of_pictures([a, b], None);
+        let wake = ctx.clone();
+        self.figures.update(pictures, same, make, move || wake.request_repaint());
+    }
+
+    /// Adds the noise of the pictures to the histories. A snapshot has no past: it is a point.
+    fn note(&mut self, pictures: Option<&[Arc<Picture>; 2]>) {
+        let main = self.main_side();
+        match (std::mem::replace(&mut self.noted, main), main) {
+            (then, now) if then == now => {}
+            (Some(_), Some(_)) => self.histories.swap(0, 1),
+            _ => self.histories = Default::default(),
+        }
+        let stored = self.stored.as_ref().map(|stored| stored.side);
+        let sides = std::iter::zip([Side::A, Side::B], pictures.into_iter().flatten());
+        for (history, (side, picture)) in self.histories.iter_mut().zip(sides) {
+            if stored == Some(side) {
+                *history = NoiseHistory::default();
+            }
+            if let Some(noise) = picture.stats.noise {
+                history.follow(picture.stats.cpu_seconds, noise);
+            }
+        }
+    }
+
+    /// Brings the figures of a rectangle in line with what is looked at, one picture or both.
+    pub fn update_part(&mut self, ctx: &Context, pictures: Vec<Arc<Picture>>, area: Option<Area>) {
+        let task = area.map(|area| PartTask { pictures, area });
+        let wake = ctx.clone();
+        self.part.update(task, PartTask::same, Part::of, move || wake.request_repaint());
+    }
+
+    /// What is known of the rectangle, once it is.
+    pub fn part(&self) -> Option<&Part> {
+        self.part.done().map(|(_, part)| part)
+    }
+
+    /// What is known of both sides, once both have a picture.
+    pub fn comparison(&self) -> Option<&Comparison> {
+        self.figures.done().map(|(_, comparison)| comparison)
+    }
+
+    /// How the noise of A and of B went down.
+    pub fn histories(&self) -> &[NoiseHistory; 2] {
+        &self.histories
+    }
+
+    /// The pictures of A and B, once both have one.
+    pub fn pictures(&self, engine: &Engine) -> Option<[Arc<Picture>; 2]> {
+        let main = engine.picture()?.clone();
+        let (other, main_is_a) = match &self.stored {
+            Some(stored) => (stored.picture.clone()?, stored.side == Side::B),
+            None => {
+                let rival = self.rival.as_ref()?.picture()?.clone();
+                (rival, self.last.is_some_and(|compared| compared.main == Side::A))
+            }
+        };
+        Some(if main_is_a { [main, other] } else { [other, main] })
+    }
+
+    /// The map of both that is shown, while one is.
+    pub fn map(&self) -> Option<&Map> {
+        let wanted = self.layout.map()?;
+        let (pair, map) = self.map.done()?;
+        map.as_ref().filter(|_| pair.kind == wanted)
+    }
+
+    /// What the viewport shows of the `pictures` of both sides, `map` in their place if there is one.
+    pub fn shown(
+        &self,
+        ctx: &Context,
+        pictures: [Arc<Picture>; 2],
+        (look, active): (Look, Side),
+        map: Option<&Map>,
+    ) -> Shown {
+        if ctx.input(|input| input.key_down(FLIP)) && !ctx.text_edit_focused() {
+            let [a, b] = pictures;
+            let other = if active == Side::A { b } else { a };
+            return Shown::One(other, look);
+        }
+        match (self.layout, map) {
+            (Layout::Wipe, _) => Shown::Wipe(pictures, look, self.divider),
+            (Layout::Beside, _) => Shown::Beside(pictures, look),
+            (_, Some(map)) => Shown::One(map.picture.clone(), map.look),
+            (_, None) => {
+                let [_, b] = pictures;
+                Shown::One(b, look)
+            }
+        }
+    }
+}

@@ -1,0 +1,442 @@
+//! Keeps the picture up to date with the document: decides what is stale, builds and starts it,
+//! and lets every edit of a fast drag come to its first picture.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use glam::UVec2;
+
+use super::probe_placer::Prober;
+use super::scene_loader::{Built, Grids, Job, Loader, Outcome, Report, Start};
+use crate::app::ui::notices::Notice;
+use crate::error::{Error, Result};
+use crate::render::publish::Extras;
+use crate::render::{Area, Layer, Picture, Resume, Session};
+use crate::scene::settings::FilmSettings;
+use crate::scene::{Note, Settings, VolumeCache};
+use crate::transport::Scene;
+use crate::transport::probes::Probes;
+
+/// A build that takes longer than this gives way to the next edit, and shows how far it is.
+const PATIENCE: Duration = Duration::from_millis(250);
+
+/// What happened since the last frame.
+pub enum News {
+    /// A file was opened.
+    Opened {
+        /// Where it came from, as the user named it.
+        source: String,
+        /// What it holds.
+        settings: Box<Settings>,
+        /// What was guessed for a bare volume.
+        notes: Vec<Note>,
+        /// How it goes on, where it was a snapshot, which keeps the size of its film.
+        reopened: Option<Notice>,
+    },
+    /// A file could not be opened, or a sample could not be taken.
+    Failed(String),
+    /// An edit could not be built.
+    Refused(String),
+    /// The settings are built.
+    Accepted,
+    /// A render was started or asked for; the number is its generation.
+    Started(u64),
+}
+
+/// The loader and the session, and what they are at.
+pub struct Engine {
+    loader: Loader,
+    /// The volumes, which a rival shares.
+    cache: Arc<VolumeCache>,
+    session: Arc<Session>,
+    prober: Arc<Prober>,
+    built: Option<Built>,
+    grids: Arc<Grids>,
+    opening: Option<(String, Instant)>,
+    building: Option<(Settings, Instant)>,
+    /// The number of the latest request to the loader.
+    request: u64,
+    /// Settings that could not be built, so that they are not tried again in every frame.
+    refused: Option<Settings>,
+    started: Option<Started>,
+    generation: u64,
+    /// The latest generation whose failure was told.
+    failed: u64,
+    paused: bool,
+    /// Whether it waits for something else that needs the machine.
+    held: bool,
+    extras: Extras,
+    /// The pixels that get all samples.
+    area: Option<Area>,
+    /// Whether what was built is another engine's.
+    is_fresh: bool,
+    picture: Option<Arc<Picture>>,
+    /// The samples of what was opened last, until its render starts.
+    resume: Option<Resume>,
+}
+
+/// The render under way.
+struct Started {
+    scene: Arc<Scene>,
+    /// What it was built from, with the film's own size.
+    settings: Settings,
+    generation: u64,
+}
+
+impl Started {
+    fn new(built: &Built, start: Start) -> Self {
+        let mut settings = built.settings.clone();
+        settings.film.size = start.size.into();
+        Self { scene: built.scene.clone(), settings, generation: start.generation }
+    }
+}
+
+impl Engine {
+    /// Starts the loader and the session with `threads` workers (`None`: as many as fit);
+    /// `wake` asks the window for a frame.
+    pub fn new(
+        threads: Option<usize>,
+        wake: impl Fn() + Clone + Send + Sync + 'static,
+    ) -> Result<Self> {
+        let session = Arc::new(Session::new(threads, wake.clone())?);
+        Self::with_cache(session, threads, Arc::default(), wake)
+    }
+
+    /// Another engine for the same scene under another strategy. It shows nothing until it has
+    /// built that.
+    pub fn rival(
+        &self,
+        threads: Option<usize>,
+        wake: impl Fn() + Clone + Send + Sync + 'static,
+    ) -> Result<Self> {
+        let session = Arc::new(Session::new(threads, wake.clone())?);
+        let mut rival = Self::with_cache(session, threads, self.cache.clone(), wake)?;
+        rival.built = self.built.clone();
+        rival.grids = self.grids.clone();
+        rival.is_fresh = true;
+        Ok(rival)
+    }
+
+    fn with_cache(
+        session: Arc<Session>,
+        threads: Option<usize>,
+        cache: Arc<VolumeCache>,
+        wake: impl Fn() + Send + Sync + 'static,
+    ) -> Result<Self> {
+        let prober = Arc::new(Prober::new(session.clone(), threads)?);
+        Ok(Self {
+            loader: Loader::new(prober.clone(), cache.clone(), wake)?,
+            cache,
+            session,
+            prober,
+            built: None,
+            grids: Arc::default(),
+            opening: None,
+            building: None,
+            request: 0,
+            refused: None,
+            started: None,
+            generation: 0,
+            failed: 0,
+            paused: false,
+            held: false,
+            extras: Extras::default(),
+            area: None,
+            is_fresh: false,
+            picture: None,
+            resume: None,
+        })
+    }
+
+    /// Opens a path or `builtin:NAME`; what is shown stays until that is built.
+    pub fn open(&mut self, source: &str) {
+        self.building = None;
+        self.opening = Some((source.to_owned(), Instant::now()));
+        self.request = self.loader.request(Job::Open(source.to_owned()), None);
+    }
+
+    /// Stops opening or building.
+    pub fn cancel(&mut self) {
+        self.loader.cancel();
+        self.opening = None;
+        if let Some((settings, _)) = self.building.take() {
+            self.refused = Some(settings);
+        }
+    }
+
+    /// Whether an edit is being built, which starts another film.
+    pub fn is_building(&self) -> bool {
+        self.building.is_some()
+    }
+
+    /// What is being opened.
+    pub fn opening(&self) -> Option<&str> {
+        self.opening.as_ref().map(|(source, _)| source.as_str())
+    }
+
+    /// The fraction done of a load or build that takes long enough to mention.
+    pub fn progress(&self) -> Option<f32> {
+        let opening = self.opening.as_ref().map(|(_, since)| since);
+        let building = self.building.as_ref().map(|(_, since)| since);
+        let since = opening.or(building)?;
+        if since.elapsed() > PATIENCE { self.loader.progress() } else { None }
+    }
+
+    /// The latest picture.
+    pub fn picture(&self) -> Option<&Arc<Picture>> {
+        self.picture.as_ref()
+    }
+
+    /// The scene that was built last, and its settings.
+    pub fn built(&self) -> Option<&Built> {
+        self.built.as_ref()
+    }
+
+    /// The probes of the scene that was built last, once they are there.
+    pub fn probes(&self) -> Option<Arc<Probes>> {
+        self.prober.probes(self.built.as_ref()?)
+    }
+
+    /// The grids of all files seen so far.
+    pub fn grids(&self) -> &Arc<Grids> {
+        &self.grids
+    }
+
+    /// The session, for snapshots of its film.
+    pub fn session(&self) -> &Session {
+        &self.session
+    }
+
+    /// What the film of the session shows: the settings that it was built from, with its own size.
+    pub fn rendered(&self) -> Option<&Settings> {
+        self.started.as_ref().map(|started| &started.settings)
+    }
+
+    /// Whether that is the scene of these settings, on whatever film.
+    pub fn renders(&self, settings: &Settings) -> bool {
+        self.rendered().is_some_and(|rendered| same_scene(rendered, settings))
+    }
+
+    /// Whether sampling is paused.
+    pub fn paused(&self) -> bool {
+        self.paused
+    }
+
+    /// Pauses or resumes sampling.
+    pub fn set_paused(&mut self, paused: bool) {
+        self.paused = paused;
+        self.session.set_paused(paused || self.held);
+    }
+
+    /// Whether it waits for something else that needs the machine.
+    pub fn held(&self) -> bool {
+        self.held
+    }
+
+    /// Lets it wait for something else, or go on unless it is paused.
+    pub fn set_held(&mut self, held: bool) {
+        if self.held != held {
+            self.held = held;
+            self.session.set_paused(self.paused || held);
+        }
+    }
+
+    /// Whether pictures bring the tracking steps of each pixel along.
+    pub fn set_layer(&mut self, layer: Option<Layer>) {
+        self.set_extras(Extras { layer, ..self.extras });
+    }
+
+    /// Whether pictures bring the variance of each pixel along.
+    pub fn set_shows_variance(&mut self, shows: bool) {
+        self.set_extras(Extras { variance: shows, ..self.extras });
+    }
+
+    fn set_extras(&mut self, extras: Extras) {
+        if self.extras != extras {
+            self.extras = extras;
+            self.session.set_extras(extras);
+        }
+    }
+
+    /// Gives all samples to the pixels of `area`, or to all pixels.
+    pub fn focus(&mut self, area: Option<Area>) {
+        if self.area != area {
+            self.area = area;
+            self.session.focus(area);
+        }
+    }
+
+    /// Throws the samples away and starts again.
+    pub fn restart(&mut self) {
+        self.started = None;
+        self.refused = None;
+        self.set_paused(false);
+    }
+
+    /// Whether the picture shown is one of the latest render.
+    pub fn is_current(&self) -> bool {
+        match (&self.started, &self.picture) {
+            (Some(started), Some(picture)) => picture.generation >= started.generation,
+            _ => false,
+        }
+    }
+
+    /// Takes in what the threads have done. Called at the start of a frame.
+    pub fn poll(&mut self) -> Vec<News> {
+        let mut news = Vec::new();
+        while let Some(report) = self.loader.poll() {
+            match report {
+                Report::Ended(outcome) => self.take_in(*outcome, &mut news),
+                Report::Grids(grids) => self.grids = grids,
+            }
+        }
+        self.picture = self.session.latest();
+        if let Some((generation, failure)) = self.session.last_failure()
+            && self.failed < generation
+        {
+            self.failed = generation;
+            let replay = failure.replay_options().map_or_else(String::new, |options| {
+                format!(
+                    "; save the scene and follow the path with: flambeau replay SCENE {options}"
+                )
+            });
+            news.push(News::Failed(format!("{failure}{replay}")));
+        }
+        news
+    }
+
+    fn take_in(&mut self, outcome: Outcome, news: &mut Vec<News>) {
+        if outcome.number == self.request {
+            self.building = None;
+            self.opening = None;
+        } else if let Job::Open(_) = &outcome.job {
+            // It was done just before another request; nobody waits for it any more.
+            return;
+        }
+        match (outcome.job, outcome.result) {
+            (_, Err(Error::Cancelled)) => {}
+            (job, Ok(built)) => {
+                if let Some(start) = outcome.started {
+                    self.started = Some(Started::new(&built, start));
+                }
+                news.push(match job {
+                    Job::Build(_) => News::Accepted,
+                    Job::Open(source) => {
+                        self.refused = None;
+                        let (settings, notes) = (built.settings.clone(), built.notes.clone());
+                        let (resume, reopened) = outcome
+                            .reopened
+                            .map(|reopened| (reopened.resume, reopened.notice))
+                            .unzip();
+                        self.resume = resume.flatten();
+                        News::Opened { source, settings: Box::new(settings), notes, reopened }
+                    }
+                });
+                self.built = Some(built);
+                self.is_fresh = false;
+            }
+            (Job::Open(_), Err(error)) => news.push(News::Failed(error.to_string())),
+            (Job::Build(settings), Err(error)) => {
+                self.refused = Some(settings);
+                news.push(News::Refused(error.to_string()));
+            }
+        }
+    }
+
+    /// Brings the render in line with `settings` on a film of `size` pixels. Called at the end
+    /// of a frame; gives the time after which it should be called again, if it had to wait.
+    pub fn update(
+        &mut self,
+        settings: &Settings,
+        size: UVec2,
+        news: &mut Vec<News>,
+    ) -> Option<Duration> {
+        let built = self.built.as_ref();
+        self.is_fresh &= built.is_some_and(|built| !same_scene(&built.settings, settings));
+        if !self.is_fresh {
+            self.start(&settings.film, size, news);
+        }
+        self.build(settings, size, news)
+    }
+
+    /// The next render's number, which is news.
+    fn next_start(&mut self, size: UVec2, news: &mut Vec<News>) -> Start {
+        self.generation += 1;
+        news.push(News::Started(self.generation));
+        Start { size, generation: self.generation }
+    }
+
+    /// Starts the scene that was built last on this film, unless it runs already. The session sees
+    /// to it that each start of a fast series may show its first picture.
+    fn start(&mut self, film: &FilmSettings, size: UVec2, news: &mut Vec<News>) {
+        let Some(built) = &mut self.built else { return };
+        let wanted = FilmSettings { size: size.into(), ..*film };
+        let runs = |started: &Started| {
+            Arc::ptr_eq(&started.scene, &built.scene) && started.settings.film == wanted
+        };
+        if self.started.as_ref().is_some_and(runs) {
+            return;
+        }
+        built.settings.film = wanted;
+        let built = built.clone();
+        let start = self.next_start(size, news);
+        let resume = self.resume.take();
+        if resume.as_ref().is_some_and(|resume| resume.film.size() != size) {
+            let text = "The graphics card cannot show a picture of this size, so that it cannot be \
+                        continued: it is rendered anew, smaller.";
+            news.push(News::Failed(text.to_owned()));
+        }
+        let resume = resume.filter(|resume| resume.film.size() == size);
+        self.prober.start(&built, start, resume);
+        self.started = Some(Started::new(&built, start));
+    }
+
+    /// Asks for a build where the settings differ from what was built last.
+    fn build(
+        &mut self,
+        settings: &Settings,
+        size: UVec2,
+        news: &mut Vec<News>,
+    ) -> Option<Duration> {
+        let fresh = |other: &Settings| same_scene(other, settings);
+        let built = self.built.as_ref()?;
+        if fresh(&built.settings) {
+            if self.refused.take().is_some() {
+                news.push(News::Accepted);
+            }
+            return None;
+        }
+        if self.opening.is_some() || self.refused.as_ref().is_some_and(fresh) {
+            return None;
+        }
+        if let Some((asked, since)) = &self.building
+            && (fresh(asked) || since.elapsed() < PATIENCE)
+        {
+            return (!fresh(asked)).then(|| PATIENCE.saturating_sub(since.elapsed()));
+        }
+        self.building = Some((settings.clone(), Instant::now()));
+        let start = self.next_start(size, news);
+        self.request = self.loader.request(Job::Build(settings.clone()), Some(start));
+        None
+    }
+}
+
+/// Whether two settings build the same scene: all but the film decides.
+fn same_scene(a: &Settings, b: &Settings) -> bool {
+    same_shot(a, b) && a.strategy == b.strategy
+}
+
+/// Whether two settings show the same: all but the film and the strategy decides.
+pub fn same_shot(a: &Settings, b: &Settings) -> bool {
+    a.camera == b.camera && same_matter(a, b)
+}
+
+/// Whether two settings are of the same things under the same light, wherever the camera is.
+pub fn same_matter(a: &Settings, b: &Settings) -> bool {
+    let Settings { camera: _, film: _, path, environment, volume, light, surface, strategy: _ } = a;
+    *path == b.path
+        && *environment == b.environment
+        && *volume == b.volume
+        && *light == b.light
+        && *surface == b.surface
+}

@@ -1,0 +1,8 @@
+//! Work off the thread of the window: the live render, loading, placing probes, dialogs, files.
+
+pub mod background;
+pub mod dialogs;
+pub mod live_render;
+pub mod probe_placer;
+pub mod reopen;
+pub mod scene_loader;

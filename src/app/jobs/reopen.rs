@@ -1,0 +1,159 @@
+//! Opens snapshot files as scenes, to go on from their samples where that is right.
+
+use std::path::Path;
+
+use crate::app::ui::notices::{Level, Notice};
+use crate::app::ui::widgets::significant;
+use crate::error::{Error, Result};
+use crate::image::exr::{Header, Snapshot, read_info, read_snapshot};
+use crate::render::estimate::samples_per_pixel;
+use crate::render::{Film, Resume};
+use crate::scene::{self, Settings};
+
+/// How the render of a reopened snapshot goes on.
+pub struct Reopened {
+    /// What it goes on from; none where it is rendered anew.
+    pub resume: Option<Resume>,
+    /// The same in words, to be put behind its name.
+    pub notice: Notice,
+}
+
+/// Whether a path is that of a snapshot, by its ending.
+pub fn is_snapshot(source: &str) -> bool {
+    let extension = Path::new(source).extension().and_then(|extension| extension.to_str());
+    extension.is_some_and(|extension| extension.eq_ignore_ascii_case("exr"))
+}
+
+/// The scene of a snapshot, and its samples where they may be continued. A limit that they have
+/// reached is lifted.
+///
+/// # Errors
+/// The file cannot be read, was not written by Flambeau, or its header holds no scene; names it.
+pub fn open(source: &str) -> Result<(Settings, Reopened)> {
+    let path = Path::new(source);
+    let Some(header) = read_info(path)?.header else {
+        let reason = "this EXR was not written by Flambeau, so there is no scene in it to open";
+        return Err(Error::invalid(source, "", reason));
+    };
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let mut settings = scene::settings_of(&header, source)?;
+    let reopened = match samples(path, &name, &header, &settings) {
+        Ok((film, doubts)) => {
+            let spp = significant(samples_per_pixel(&film));
+            let mut text = format!("it goes on from {spp} spp.");
+            if lift_limit(&mut settings, &film) {
+                text.push_str(" The limit it had reached is lifted.");
+            }
+            for doubt in doubts {
+                text.push_str(&format!("\n{doubt}."));
+            }
+            let (seconds, cpu_seconds) = (header.wall_seconds, header.cpu_seconds_render);
+            let resume = Some(Resume { film, seconds, cpu_seconds });
+            Reopened { resume, notice: Notice { level: Level::Done, text } }
+        }
+        Err(reason) => {
+            let text = format!("it cannot be continued and is rendered anew: {reason}.");
+            Reopened { resume: None, notice: Notice { level: Level::Failed, text } }
+        }
+    };
+    Ok((settings, reopened))
+}
+
+/// The samples of a snapshot, with what could not be made sure of; or why they cannot be continued.
+fn samples(
+    path: &Path,
+    name: &str,
+    header: &Header,
+    settings: &Settings,
+) -> Result<(Film, Vec<String>), String> {
+    let files = scene::fingerprints(settings).map_err(|error| error.to_string())?;
+    let kinship = scene::kinship(header, name, settings, &files);
+    let kinship = kinship.map_err(|error| error.to_string())?;
+    if let Some(obstacle) = kinship.obstacle {
+        return Err(obstacle.what);
+    }
+    let Snapshot { film, .. } = read_snapshot(path).map_err(|error| error.to_string())?;
+    if film.size().to_array() != settings.film.size {
+        return Err("its picture has another size than its scene says".to_owned());
+    }
+    Ok((film, kinship.doubts))
+}
+
+/// Lets a render go on that has all the samples it was to have; whether it had.
+fn lift_limit(settings: &mut Settings, film: &Film) -> bool {
+    let reached = settings.film.spp > 0 && film.sample_range().0 >= settings.film.spp;
+    if reached {
+        settings.film.spp = 0;
+    }
+    reached
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::image::exr;
+    use glam::UVec2;
+
+    /// A snapshot of nothing much, with a volume file beside it.
+    fn write(folder: &Path, spp: u32) -> String {
+        let volume = folder.join("fire.vdb");
+        std::fs::write(&volume, b"voxels").unwrap();
+        let mut settings = Settings::default();
+        settings.film.size = [3, 2];
+        settings.film.spp = spp;
+        let volume = crate::scene::settings::VolumeSettings {
+            file: Some(volume.to_str().unwrap().to_owned()),
+            ..Default::default()
+        };
+        settings.volume = vec![volume];
+        let header = Header {
+            scene: scene::to_toml(&settings, None).unwrap(),
+            version: env!("CARGO_PKG_VERSION").to_owned(),
+            wall_seconds: 7.0,
+            files: scene::fingerprints(&settings).unwrap(),
+            ..Header::default()
+        };
+        let mut film = Film::new(UVec2::new(3, 2)).unwrap();
+        for pixel in 0..6 {
+            film.add(UVec2::new(pixel % 3, pixel / 3), &Default::default());
+        }
+        let path = folder.join("out.EXR");
+        exr::write(&path, &film, &header).unwrap();
+        path.to_str().unwrap().to_owned()
+    }
+
+    #[test]
+    fn samples_go_on_while_the_files_are_the_same() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = write(folder.path(), 9);
+        assert!(is_snapshot(&path) && !is_snapshot("exr") && !is_snapshot("a/exr.toml"));
+        let (settings, reopened) = open(&path).unwrap();
+        let resume = reopened.resume.unwrap();
+        assert_eq!((resume.film.sample_range(), resume.seconds), ((1, 1), 7.0));
+        assert_eq!((settings.film.spp, reopened.notice.level), (9, Level::Done));
+
+        std::fs::write(folder.path().join("fire.vdb"), b"other voxels").unwrap();
+        let (settings, reopened) = open(&path).unwrap();
+        assert!(reopened.resume.is_none() && settings.film.size == [3, 2]);
+        let Notice { level, text } = reopened.notice;
+        assert_eq!(level, Level::Failed);
+        assert!(text.contains("fire.vdb had 6 bytes and now has 12"), "{text}");
+    }
+
+    #[test]
+    fn a_limit_that_was_reached_is_lifted() {
+        let folder = tempfile::tempdir().unwrap();
+        let (settings, reopened) = open(&write(folder.path(), 1)).unwrap();
+        assert_eq!(settings.film.spp, 0);
+        assert!(reopened.resume.is_some() && reopened.notice.text.contains("lifted"));
+    }
+
+    #[test]
+    fn pictures_of_other_programs_say_so() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("foreign.exr");
+        ::exr::prelude::write_rgb_file(&path, 4, 4, |_, _| (0.5f32, 0.5f32, 0.5f32)).unwrap();
+        let error = open(path.to_str().unwrap()).err().unwrap().to_string();
+        assert!(error.contains("foreign.exr") && error.contains("not written by"), "{error}");
+    }
+}

@@ -1,0 +1,340 @@
+//! A thread that reads and builds scenes and starts to render them, so that nothing blocks the
+//! window. The latest request wins: a new one cancels the one at work, and only its outcome is
+//! reported.
+
+use std::collections::HashMap;
+use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, mpsc};
+
+use glam::UVec2;
+
+use super::probe_placer::Prober;
+use super::reopen::{self, Reopened};
+use crate::error::{Error, Progress, Result};
+use crate::scene::{self, GridDescription, Note, Overrides, Settings, VolumeCache};
+use crate::transport::Scene;
+
+/// The grids of volume files by the file's name.
+pub type Grids = HashMap<String, Vec<GridDescription>>;
+
+/// What the loader is asked to do.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Job {
+    /// Read a scene, a volume or a snapshot (a path or `builtin:NAME`) and build it.
+    Open(String),
+    /// Build these settings.
+    Build(Settings),
+}
+
+/// What the loader has to say.
+pub enum Report {
+    /// A job has ended.
+    Ended(Box<Outcome>),
+    /// The grids of all files seen so far.
+    Grids(Arc<Grids>),
+}
+
+/// A render to start as soon as a job is done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Start {
+    /// Width and height of the film in pixels.
+    pub size: UVec2,
+    /// The number of the render.
+    pub generation: u64,
+}
+
+/// What came of a job.
+pub struct Outcome {
+    /// The number of the request, as [`Loader::request`] gave it.
+    pub number: u64,
+    /// The job.
+    pub job: Job,
+    /// The settings and the scene built from them.
+    pub result: Result<Built>,
+    /// The render that was started, if one was asked for and the scene could be built.
+    pub started: Option<Start>,
+    /// How it goes on, where a snapshot was opened.
+    pub reopened: Option<Reopened>,
+}
+
+/// A built scene and the settings that it was built from.
+#[derive(Clone)]
+pub struct Built {
+    /// What it was built from.
+    pub settings: Settings,
+    /// What was guessed for a bare volume.
+    pub notes: Vec<Note>,
+    /// Ready to sample.
+    pub scene: Arc<Scene>,
+}
+
+/// The handle of the thread. Dropping it cancels and ends the thread.
+pub struct Loader {
+    shared: Arc<Shared>,
+    reports: mpsc::Receiver<Report>,
+    thread: Option<std::thread::JoinHandle<()>>,
+}
+
+struct Shared {
+    desk: Mutex<Desk>,
+    wake: Condvar,
+    /// Counts the requests; work for an older one is cancelled.
+    latest: AtomicU64,
+    /// Percents done of the present job.
+    percent: AtomicU32,
+}
+
+/// A request.
+struct Ticket {
+    number: u64,
+    job: Job,
+    start: Option<Start>,
+}
+
+#[derive(Default)]
+struct Desk {
+    next: Option<Ticket>,
+    busy: bool,
+    closed: bool,
+}
+
+impl Loader {
+    /// Starts the thread, which starts renders by `prober` and keeps volumes in `cache`. `on_news` is called after each report
+    /// and as work proceeds.
+    ///
+    /// # Errors
+    /// When the system refuses to start a thread.
+    pub fn new(
+        prober: Arc<Prober>,
+        cache: Arc<VolumeCache>,
+        on_news: impl Fn() + Send + Sync + 'static,
+    ) -> Result<Self> {
+        let shared = Arc::new(Shared {
+            desk: Mutex::default(),
+            wake: Condvar::new(),
+            latest: AtomicU64::new(0),
+            percent: AtomicU32::new(0),
+        });
+        let (sender, reports) = mpsc::channel();
+        let worker = shared.clone();
+        let thread = std::thread::Builder::new()
+            .name("loader".to_owned())
+            .spawn(move || work(&worker, &prober, &cache, &sender, &on_news))
+            .map_err(|error| Error::io("the loader thread", error))?;
+        Ok(Self { shared, reports, thread: Some(thread) })
+    }
+
+    /// Asks for `job`, and to `start` a render of what it builds; cancels any other. Gives the
+    /// number of the request.
+    pub fn request(&self, job: Job, start: Option<Start>) -> u64 {
+        let number = self.shared.latest.fetch_add(1, Ordering::Relaxed) + 1;
+        self.shared.desk().next = Some(Ticket { number, job, start });
+        self.shared.wake.notify_all();
+        number
+    }
+
+    /// Cancels what is at work or waiting.
+    pub fn cancel(&self) {
+        self.shared.latest.fetch_add(1, Ordering::Relaxed);
+        self.shared.desk().next = None;
+    }
+
+    /// The next report, if there is one.
+    pub fn poll(&self) -> Option<Report> {
+        self.reports.try_recv().ok()
+    }
+
+    /// The fraction done of the job at work, in 0..=1; `None` while idle.
+    pub fn progress(&self) -> Option<f32> {
+        let desk = self.shared.desk();
+        let busy = desk.busy || desk.next.is_some();
+        busy.then(|| self.shared.percent.load(Ordering::Relaxed) as f32 / 100.0)
+    }
+}
+
+impl Drop for Loader {
+    fn drop(&mut self) {
+        self.cancel();
+        self.shared.desk().closed = true;
+        self.shared.wake.notify_all();
+        if let Some(thread) = self.thread.take() {
+            // A panic over there was reported there already.
+            let _ = thread.join();
+        }
+    }
+}
+
+impl Shared {
+    /// The desk, also after a panic of the other side: it is sound after every statement.
+    fn desk(&self) -> MutexGuard<'_, Desk> {
+        self.desk.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Waits for the next job; `None` when the loader is dropped.
+    fn next(&self) -> Option<Ticket> {
+        let mut desk = self.desk();
+        desk.busy = false;
+        loop {
+            if desk.closed {
+                return None;
+            }
+            if let Some(next) = desk.next.take() {
+                desk.busy = true;
+                self.percent.store(0, Ordering::Relaxed);
+                return Some(next);
+            }
+            desk = self.wake.wait(desk).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+}
+
+fn work(
+    shared: &Shared,
+    prober: &Prober,
+    cache: &VolumeCache,
+    reports: &mpsc::Sender<Report>,
+    on_news: &(dyn Fn() + Sync),
+) {
+    let mut grids = Grids::new();
+    while let Some(Ticket { number, job, start }) = shared.next() {
+        let is_latest = || shared.latest.load(Ordering::Relaxed) == number;
+        let progress = |fraction: f32| {
+            let percent = (100.0 * fraction) as u32;
+            if shared.percent.swap(percent, Ordering::Relaxed) != percent {
+                on_news();
+            }
+            is_latest()
+        };
+        let result = run(&job, cache, &progress);
+        if !is_latest() {
+            on_news();
+            continue;
+        }
+        shared.desk().busy = false;
+        let (result, reopened) = match result {
+            Ok((built, reopened)) => (Ok(built), reopened),
+            Err(error) => (Err(error), None),
+        };
+        let settings = result.as_ref().ok().map(|built| built.settings.clone());
+        let started = start.filter(|start| match &result {
+            Ok(built) => {
+                prober.start(built, *start, None);
+                true
+            }
+            Err(_) => false,
+        });
+        // The receiver lives as long as this thread: the loader joins it.
+        let outcome = Outcome { number, job, result, started, reopened };
+        let _ = reports.send(Report::Ended(Box::new(outcome)));
+        on_news();
+        let Some(settings) = settings else { continue };
+        let still_latest = |_: f32| is_latest();
+        // What fails here is told when the grid is asked for.
+        if let Ok(true) = add_missing(&mut grids, &settings, cache, &still_latest) {
+            let _ = reports.send(Report::Grids(Arc::new(grids.clone())));
+            on_news();
+        }
+    }
+}
+
+fn run(
+    job: &Job,
+    cache: &VolumeCache,
+    progress: Progress<'_>,
+) -> Result<(Built, Option<Reopened>)> {
+    let (settings, notes, reopened) = match job {
+        Job::Open(source) if reopen::is_snapshot(source) => {
+            let (settings, reopened) = reopen::open(source)?;
+            (settings, Vec::new(), Some(reopened))
+        }
+        Job::Open(source) => {
+            let opened = scene::open(source, &Overrides::default(), cache, progress)?;
+            (opened.settings, opened.notes, None)
+        }
+        Job::Build(settings) => (settings.clone(), Vec::new(), None),
+    };
+    let scene = Arc::new(scene::assemble(&settings, cache, progress)?);
+    Ok((Built { settings, notes, scene }, reopened))
+}
+
+/// Adds the grids of the files of `settings` that `grids` does not have yet, and reads those that
+/// the scene itself does not need. Whether there were any.
+fn add_missing(
+    grids: &mut Grids,
+    settings: &Settings,
+    cache: &VolumeCache,
+    progress: Progress<'_>,
+) -> Result<bool> {
+    let mut added = false;
+    for name in settings.volume.iter().filter_map(|volume| volume.file.as_ref()) {
+        if !grids.contains_key(name) {
+            grids.insert(name.clone(), scene::describe(name, cache, progress)?.grids);
+            added = true;
+        }
+    }
+    Ok(added)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::render::Session;
+    use std::time::{Duration, Instant};
+
+    fn loader() -> Loader {
+        let session = Arc::new(Session::new(Some(1), || ()).unwrap());
+        let prober = Arc::new(Prober::new(session, Some(1)).unwrap());
+        Loader::new(prober, Arc::default(), || ()).unwrap()
+    }
+
+    fn wait(loader: &Loader) -> Outcome {
+        let start = Instant::now();
+        loop {
+            if let Some(Report::Ended(outcome)) = loader.poll() {
+                return *outcome;
+            }
+            assert!(start.elapsed() < Duration::from_secs(60), "no outcome");
+            std::thread::sleep(Duration::from_millis(1));
+        }
+    }
+
+    #[test]
+    fn the_latest_request_wins() {
+        let loader = loader();
+        for seed in 0..50 {
+            let mut settings = Settings::default();
+            settings.film.seed = seed;
+            loader.request(Job::Build(settings), None);
+        }
+        loop {
+            let outcome = wait(&loader);
+            if outcome.result.unwrap().settings.film.seed == 49 {
+                break;
+            }
+        }
+        assert!(loader.poll().is_none());
+    }
+
+    #[test]
+    fn a_cancelled_job_has_no_outcome() {
+        let loader = loader();
+        loader.request(Job::Open(scene::DEFAULT_SCENE.to_owned()), None);
+        loader.cancel();
+        let start = Instant::now();
+        while loader.progress().is_some() {
+            assert!(start.elapsed() < Duration::from_secs(60), "still at work");
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        assert!(loader.poll().is_none());
+    }
+
+    #[test]
+    fn failures_name_what_was_asked_for() {
+        let loader = loader();
+        loader.request(Job::Open("no/such/file.vdb".to_owned()), None);
+        let outcome = wait(&loader);
+        assert_eq!(outcome.job, Job::Open("no/such/file.vdb".to_owned()));
+        assert!(outcome.result.is_err());
+        assert_eq!(loader.progress(), None);
+    }
+}

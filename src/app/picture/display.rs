@@ -1,0 +1,458 @@
+//! The picture on the graphics card: upload when there is a new one, the draw call that exposes,
+//! curves and codes it, or colors its numbers (`display.wgsl`), and the copy to the window. Coarse
+//! pictures are coded before their upload.
+
+mod canvas;
+mod pipelines;
+
+use std::borrow::Cow;
+use std::num::NonZeroU64;
+use std::sync::Arc;
+
+use egui_wgpu::{CallbackResources, CallbackTrait, RenderState, ScreenDescriptor};
+use glam::{UVec2, Vec2};
+
+use super::zoom::Placement;
+use crate::app::diagnostics::{STOPS, Scale, stops};
+use crate::app::ui::theme::color;
+use crate::image::tone::{Channel, Tone, false_color};
+use crate::math::Rgb;
+use crate::render::Picture;
+use canvas::{Canvas, Place};
+use pipelines::{Pipelines, Variant};
+
+/// `View` of the shader.
+#[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+struct View {
+    origin: [f32; 2],
+    step: f32,
+    block_log2: u32,
+    size: [u32; 2],
+    canvas: [i32; 2],
+    surround: [f32; 4],
+    scale: [f32; 4],
+    exposed_from_linear: [[f32; 4]; 3],
+    ramp: [[f32; 4]; STOPS],
+}
+
+/// Pictures that can be shown at once.
+pub const PANES: usize = 2;
+
+/// What of a picture is shown.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Look {
+    /// Its light, exposed and curved.
+    Picture(Tone),
+    /// A layer of light in its place.
+    Light(Tone),
+    /// A layer of numbers, on this scale.
+    Numbers(Scale),
+}
+
+/// Which data of a picture is on the graphics card.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Source {
+    Pixels,
+    Light,
+    Numbers,
+}
+
+impl Look {
+    fn source(self) -> Source {
+        match self {
+            Self::Picture(_) => Source::Pixels,
+            Self::Light(_) => Source::Light,
+            Self::Numbers(_) => Source::Numbers,
+        }
+    }
+}
+
+impl Source {
+    /// Floats of a pixel on the graphics card.
+    fn format(self) -> wgpu::TextureFormat {
+        match self {
+            Self::Pixels | Self::Light => wgpu::TextureFormat::Rgba32Float,
+            Self::Numbers => wgpu::TextureFormat::R32Float,
+        }
+    }
+
+    fn light(self, picture: &Picture) -> &[[f32; 4]] {
+        match self {
+            Self::Pixels => &picture.pixels,
+            Self::Light => &picture.layer.light,
+            Self::Numbers => &[],
+        }
+    }
+}
+
+/// What of a picture is on the graphics card, and how.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Upload {
+    source: Source,
+    /// As what its light is shown, if that is settled here: of a coarse picture this is worked out
+    /// for its few texels, not for every pixel of the window.
+    coded: Option<Tone>,
+}
+
+impl Upload {
+    /// One texel a block of `picture`, row by row.
+    fn texels(self, picture: &Picture) -> Cow<'_, [u8]> {
+        let Some(tone) = self.coded else {
+            return match self.source {
+                Source::Numbers => blocks(picture, &picture.layer.numbers),
+                light => blocks(picture, light.light(picture)),
+            };
+        };
+        let encoder = tone.encoder();
+        let codes = corners(picture, self.source.light(picture)).flat_map(|[r, g, b, _]| {
+            let [r, g, b] =
+                encoder.encode(Rgb::new(*r, *g, *b)).map(|code| f32::from(code) / 255.0);
+            [r, g, b, 1.0]
+        });
+        Cow::Owned(codes.flat_map(f32::to_ne_bytes).collect())
+    }
+}
+
+/// Of the `values` of all pixels, one a block.
+fn blocks<'a, T: bytemuck::NoUninit>(picture: &Picture, values: &'a [T]) -> Cow<'a, [u8]> {
+    if picture.block_log2 == 0 {
+        return Cow::Borrowed(bytemuck::cast_slice(values));
+    }
+    Cow::Owned(corners(picture, values).flat_map(bytemuck::bytes_of).copied().collect())
+}
+
+/// The first of the `values` of each block, row by row.
+fn corners<'a, T>(picture: &Picture, values: &'a [T]) -> impl Iterator<Item = &'a T> {
+    let side = 1 << picture.block_log2;
+    let lines = values.chunks(picture.size.x.max(1) as usize).step_by(side);
+    lines.flat_map(move |line| line.iter().step_by(side))
+}
+
+/// What the draw call needs on the graphics card; lives among egui's callback resources.
+struct Display {
+    pipelines: Pipelines,
+    layout: wgpu::BindGroupLayout,
+    panes: [Pane; PANES],
+}
+
+/// A picture on the graphics card and how it is looked at.
+struct Pane {
+    view: wgpu::Buffer,
+    shown: Option<Shown>,
+    canvas: Option<Canvas>,
+    /// What is drawn on the canvas, if anything.
+    drawn: Option<Drawn>,
+}
+
+/// What is drawn on a canvas.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Drawn {
+    view: View,
+    variant: Variant,
+    /// The part of the canvas that is seen; nothing is drawn beside it.
+    seen: Place,
+}
+
+/// The uploaded picture.
+struct Shown {
+    picture: Arc<Picture>,
+    upload: Upload,
+    texture: wgpu::Texture,
+    bindings: wgpu::BindGroup,
+}
+
+/// Prepares the graphics card of `state` for [`paint`].
+pub fn install(state: &RenderState) {
+    let display = Display::new(&state.device, state.target_format);
+    state.renderer.write().callback_resources.insert(display);
+}
+
+/// The widest and highest picture that the graphics card can show.
+pub fn largest_size(state: &RenderState) -> u32 {
+    state.device.limits().max_texture_dimension_2d
+}
+
+/// A picture and where it is to be shown.
+pub struct Shot {
+    /// The picture.
+    pub picture: Arc<Picture>,
+    /// What of it.
+    pub look: Look,
+    /// Where it lies, from the corner of `area`.
+    pub placement: Placement,
+    /// The part of the window that it is laid out in, in points.
+    pub area: egui::Rect,
+    /// The part of that which is seen.
+    pub clip: egui::Rect,
+    /// Which of the pictures shown at once it is, below [`PANES`].
+    pub pane: usize,
+}
+
+/// Shows a picture where it is seen.
+pub fn paint(painter: &egui::Painter, shot: Shot) {
+    painter.add(egui_wgpu::Callback::new_paint_callback(shot.clip, shot));
+}
+
+impl CallbackTrait for Shot {
+    fn prepare(
+        &self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        screen: &ScreenDescriptor,
+        encoder: &mut wgpu::CommandEncoder,
+        resources: &mut CallbackResources,
+    ) -> Vec<wgpu::CommandBuffer> {
+        let Some(display) = resources.get_mut::<Display>() else { return Vec::new() };
+        let Display { layout, panes, pipelines } = display;
+        let Some(pane) = panes.get_mut(self.pane) else { return Vec::new() };
+        let place = Place::of(&self.area, screen);
+        let coded = self.coded(pipelines.canvas_format());
+        let view = self.view(&place, screen.pixels_per_point, coded.is_some());
+        let variant = Variant::new(self.look, view.step, coded.is_some());
+        let upload = Upload { source: self.look.source(), coded };
+        let is_new = pane.upload(device, queue, layout, &self.picture, upload);
+        let drawn = Drawn { view, variant, seen: Place::of(&self.clip, screen).within(&place) };
+        if is_new || !pane.shows(&drawn, place.size) {
+            queue.write_buffer(&pane.view, 0, bytemuck::bytes_of(&view));
+            let format = pipelines.canvas_format();
+            let pipeline = pipelines.of(device, variant);
+            pane.draw(device, encoder, (layout, pipeline), (place.size, format), &drawn.seen);
+            pane.drawn = Some(drawn);
+        }
+        Vec::new()
+    }
+
+    fn paint(
+        &self,
+        _info: egui::PaintCallbackInfo,
+        pass: &mut wgpu::RenderPass<'static>,
+        resources: &CallbackResources,
+    ) {
+        let Some(display) = resources.get::<Display>() else { return };
+        let canvas = display.panes.get(self.pane).and_then(|pane| pane.canvas.as_ref());
+        let Some(canvas) = canvas else { return };
+        pass.set_pipeline(display.pipelines.copy());
+        pass.set_bind_group(0, canvas.bindings(), &[]);
+        pass.draw(0..3, 0..1);
+    }
+}
+
+impl Shot {
+    /// How the picture is coded before it is drawn, if it is. Codes are not for canvases that code
+    /// by themselves, nor to draw lines on.
+    fn coded(&self, canvas: wgpu::TextureFormat) -> Option<Tone> {
+        let (Look::Picture(tone) | Look::Light(tone)) = self.look else { return None };
+        let is_plain = !canvas.is_srgb() && !pipelines::has_grid(1.0 / self.placement.scale);
+        // Smaller blocks are many, and blocks smaller than a pixel of the window have to be averaged.
+        let side = 1 << self.picture.block_log2;
+        let are_large = side > 2 && 1.0 / self.placement.scale <= side as f32;
+        (are_large && is_plain).then_some(tone)
+    }
+
+    fn view(&self, place: &Place, pixels_per_point: f32, is_coded: bool) -> View {
+        let area = Vec2::new(self.area.min.x, self.area.min.y) * pixels_per_point;
+        let corner = area + self.placement.corner;
+        let surround = match is_coded {
+            true => color::SURROUND.to_normalized_gamma_f32(),
+            false => egui::Rgba::from(color::SURROUND).to_array(),
+        };
+        let (tone, scale) = match self.look {
+            Look::Picture(tone) | Look::Light(tone) => (tone, [0.0; 4]),
+            Look::Numbers(scale) => (Tone::default(), scale_and_span(scale)),
+        };
+        let padded_columns =
+            tone.exposed_from_linear().to_cols_array_2d().map(|[x, y, z]| [x, y, z, 0.0]);
+        let ramp = match (self.look, tone.channel) {
+            (Look::Picture(_) | Look::Light(_), Channel::FalseColor) => stop_colors(),
+            _ => *stops(),
+        };
+        View {
+            origin: (-corner / self.placement.scale).into(),
+            step: 1.0 / self.placement.scale,
+            block_log2: self.picture.block_log2,
+            size: self.picture.size.into(),
+            canvas: place.corner,
+            surround,
+            scale,
+            exposed_from_linear: padded_columns,
+            ramp: ramp.map(|[r, g, b]| [r, g, b, 1.0]),
+        }
+    }
+}
+
+fn scale_and_span(Scale { low, high }: Scale) -> [f32; 4] {
+    let span = (high / low).ln();
+    [low.ln(), if span > 0.0 { 1.0 / span } else { 0.0 }, 0.0, 0.0]
+}
+
+/// The colors of false color, linear.
+fn stop_colors() -> [[f32; 3]; STOPS] {
+    false_color::COLORS.map(|code| {
+        let [r, g, b, _] = egui::Rgba::from(color::of(code)).to_array();
+        [r, g, b]
+    })
+}
+
+impl Display {
+    fn new(device: &wgpu::Device, target: wgpu::TextureFormat) -> Self {
+        let layout = bind_group_layout(device);
+        let pipelines = Pipelines::new(device, &layout, target);
+        let panes = std::array::from_fn(|_| Pane::new(device));
+        Self { pipelines, layout, panes }
+    }
+}
+
+impl Pane {
+    fn new(device: &wgpu::Device) -> Self {
+        let view = device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("display view"),
+            size: size_of::<View>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        Self { view, shown: None, canvas: None, drawn: None }
+    }
+
+    /// Whether the canvas shows just that already.
+    fn shows(&self, wanted: &Drawn, size: UVec2) -> bool {
+        self.drawn.as_ref() == Some(wanted)
+            && self.canvas.as_ref().is_some_and(|canvas| canvas.is_of(size))
+    }
+
+    /// Draws the uploaded picture on the canvas, which has that size and format.
+    fn draw(
+        &mut self,
+        device: &wgpu::Device,
+        encoder: &mut wgpu::CommandEncoder,
+        (layout, pipeline): (&wgpu::BindGroupLayout, &wgpu::RenderPipeline),
+        (size, format): (UVec2, wgpu::TextureFormat),
+        seen: &Place,
+    ) {
+        let Some(shown) = &self.shown else { return };
+        let old = self.canvas.take().filter(|canvas| canvas.is_of(size));
+        let canvas = old.unwrap_or_else(|| Canvas::new(device, layout, (size, format), &self.view));
+        canvas.draw(encoder, pipeline, &shown.bindings, seen);
+        self.canvas = Some(canvas);
+    }
+
+    /// Brings what is shown of `picture` onto the graphics card; false where it is there already.
+    fn upload(
+        &mut self,
+        device: &wgpu::Device,
+        queue: &wgpu::Queue,
+        layout: &wgpu::BindGroupLayout,
+        picture: &Arc<Picture>,
+        upload: Upload,
+    ) -> bool {
+        let format = upload.source.format();
+        let is_there =
+            |shown: &Shown| Arc::ptr_eq(&shown.picture, picture) && shown.upload == upload;
+        if self.shown.as_ref().is_some_and(is_there) {
+            return false;
+        }
+        let fits = |shown: &Shown| {
+            shown.picture.size == picture.size && shown.upload.source.format() == format
+        };
+        let (texture, bindings) = match self.shown.take().filter(fits) {
+            Some(shown) => (shown.texture, shown.bindings),
+            None => self.allocate(device, layout, picture.size, format),
+        };
+        // A coarse picture takes a corner of the texture, and no time.
+        let size = picture.size.map(|side| side.div_ceil(1 << picture.block_log2));
+        let UVec2 { x: width, y: height } = size;
+        queue.write_texture(
+            texture.as_image_copy(),
+            &upload.texels(picture),
+            wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: format.block_copy_size(None).map(|bytes| bytes * width),
+                rows_per_image: Some(height),
+            },
+            wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
+        );
+        self.shown = Some(Shown { picture: picture.clone(), upload, texture, bindings });
+        true
+    }
+
+    fn allocate(
+        &self,
+        device: &wgpu::Device,
+        layout: &wgpu::BindGroupLayout,
+        size: UVec2,
+        format: wgpu::TextureFormat,
+    ) -> (wgpu::Texture, wgpu::BindGroup) {
+        let usage = wgpu::TextureUsages::COPY_DST;
+        let texture = texture(device, "picture", (size, format), usage);
+        let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let bindings = bind(device, layout, &self.view, &view);
+        (texture, bindings)
+    }
+}
+
+/// A texture that shaders read, and that has another use too.
+fn texture(
+    device: &wgpu::Device,
+    label: &str,
+    (size, format): (UVec2, wgpu::TextureFormat),
+    usage: wgpu::TextureUsages,
+) -> wgpu::Texture {
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | usage,
+        view_formats: &[],
+    })
+}
+
+/// Binds how a texture is looked at, and the texture.
+fn bind(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    view: &wgpu::Buffer,
+    texture: &wgpu::TextureView,
+) -> wgpu::BindGroup {
+    device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some("display"),
+        layout,
+        entries: &[
+            wgpu::BindGroupEntry { binding: 0, resource: view.as_entire_binding() },
+            wgpu::BindGroupEntry {
+                binding: 1,
+                resource: wgpu::BindingResource::TextureView(texture),
+            },
+        ],
+    })
+}
+
+fn bind_group_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some("display"),
+        entries: &[
+            wgpu::BindGroupLayoutEntry {
+                binding: 0,
+                visibility: wgpu::ShaderStages::FRAGMENT,
+                ty: wgpu::BindingType::Buffer {
+                    ty: wgpu::BufferBindingType::Uniform,
+                    has_dynamic_offset: false,
+                    min_binding_size: NonZeroU64::new(size_of::<View>() as u64),
+                },
+                count: None,
+            },
+            wgpu::BindGroupLayoutEntry {
+                binding: 1,
+                visibility: wgpu::ShaderStages::FRAGMENT,
+                ty: wgpu::BindingType::Texture {
+                    sample_type: wgpu::TextureSampleType::Float { filterable: false },
+                    view_dimension: wgpu::TextureViewDimension::D2,
+                    multisampled: false,
+                },
+                count: None,
+            },
+        ],
+    })
+}

@@ -1,0 +1,10 @@
+//! The picture and the hand on it: viewport, navigation, zoom, display, pixel values, handles.
+
+pub mod display;
+pub mod gizmo;
+pub mod navigation;
+pub mod pixel_values;
+pub mod ramp_color;
+pub mod region;
+pub mod viewport;
+pub mod zoom;

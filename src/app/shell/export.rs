@@ -1,0 +1,115 @@
+//! The view as it is, with names, legend and figures, to be written to a file.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use glam::UVec2;
+use rayon::prelude::*;
+
+use crate::app::diagnostics::Legend;
+use crate::app::picture::display::Look;
+use crate::app::picture::viewport::Shown;
+use crate::app::ui::widgets::significant;
+use crate::error::{Error, Result};
+use crate::image::export;
+use crate::image::export::{Pane, Sheet, Table};
+use crate::image::legend;
+use crate::image::ramp;
+use crate::image::tone::Tone;
+use crate::math::Rgb;
+use crate::render::Area;
+use crate::render::Picture;
+
+/// Everything that is written.
+pub struct SavedView {
+    /// The pictures, as the viewport shows them.
+    pub shown: Shown,
+    /// What they are called, from left to right.
+    pub names: Vec<String>,
+    /// What the colors of a map mean.
+    pub legend: Option<Legend>,
+    /// The rectangle.
+    pub area: Option<Area>,
+    /// Sentences below.
+    pub words: Vec<String>,
+    /// Figures below.
+    pub tables: Vec<Table>,
+}
+
+impl SavedView {
+    /// Writes it as a PNG.
+    ///
+    /// # Errors
+    /// When there is no picture, or the system refuses to write.
+    pub fn write(self, path: &Path) -> Result<()> {
+        let panes = self.panes();
+        if panes.is_empty() {
+            let name = path.display().to_string();
+            return Err(Error::invalid(name, "", "there is no picture to save yet"));
+        }
+        let colors = self.legend.as_ref().and_then(|legend| Some((legend, legend.colors?)));
+        let color = |place| colors.map_or([0; 3], |(_, colors)| colors.color(place));
+        let legend = colors.map(|(legend, colors)| legend::Legend {
+            title: legend.title,
+            note: &legend.note,
+            color: &color,
+            ends: colors.ends().map(|end| significant(f64::from(end))),
+        });
+        let sheet = Sheet { panes, legend, words: self.words, tables: self.tables };
+        export::write(path, &sheet)
+    }
+
+    /// The pictures, those of a wipe as one.
+    fn panes(&self) -> Vec<Pane> {
+        let name = |index: usize| self.names.get(index).cloned().into_iter().collect();
+        match &self.shown {
+            Shown::Nothing => Vec::new(),
+            Shown::One(picture, look) => vec![self.pane(picture, *look, name(0))],
+            Shown::Beside([a, b], look) => {
+                vec![self.pane(a, *look, name(0)), self.pane(b, *look, name(1))]
+            }
+            Shown::Wipe([a, b], look, share) if a.size == b.size => {
+                let column = (share * a.size.x as f32).round() as u32;
+                let mut pane = self.pane(a, *look, self.names.clone());
+                let right = codes(b, *look);
+                for (index, code) in pane.codes.iter_mut().enumerate() {
+                    if index as u32 % a.size.x >= column {
+                        *code = right[index];
+                    }
+                }
+                pane.divider = Some(column.min(a.size.x.saturating_sub(1)));
+                vec![pane]
+            }
+            // Two sizes have no place to be parted at.
+            Shown::Wipe([a, b], look, _) => {
+                vec![self.pane(a, *look, name(0)), self.pane(b, *look, name(1))]
+            }
+        }
+    }
+
+    fn pane(&self, picture: &Arc<Picture>, look: Look, names: Vec<String>) -> Pane {
+        let rectangle: Option<[UVec2; 2]> =
+            self.area.map(|area| [area.first, area.first + area.size]);
+        Pane { size: picture.size, codes: codes(picture, look), names, divider: None, rectangle }
+    }
+}
+
+/// What the screen shows of a picture, as 8-bit sRGB.
+fn codes(picture: &Picture, look: Look) -> Vec<[u8; 3]> {
+    match look {
+        Look::Picture(tone) => light_codes(&picture.pixels, tone),
+        Look::Light(tone) => light_codes(&picture.layer.light, tone),
+        Look::Numbers(scale) => {
+            let code = |&value: &f32| match value > 0.0 {
+                true => ramp::color(scale.place(value)),
+                false => [0; 3],
+            };
+            picture.layer.numbers.par_iter().map(code).collect()
+        }
+    }
+}
+
+fn light_codes(pixels: &[[f32; 4]], tone: Tone) -> Vec<[u8; 3]> {
+    let encoder = tone.encoder();
+    pixels.par_iter().map(|&[r, g, b, _]| encoder.encode(Rgb::new(r, g, b))).collect()
+}

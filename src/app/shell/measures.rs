@@ -1,0 +1,209 @@
+//! What is measured of the picture: rows with how A and B, the rectangle and the reference are
+//! looked at and what is known of them.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use egui::{Context, Ui};
+use glam::UVec2;
+
+use super::App;
+use crate::app::command::Command;
+use crate::app::compare::maps::Map;
+use crate::app::compare::panel;
+use crate::app::compare::reference::{Measure, Origin, Seen};
+use crate::app::compare::rows;
+use crate::app::compare::rows::Asked;
+use crate::app::compare::second_side::Layout;
+use crate::app::document::Side;
+use crate::app::jobs::dialogs::Purpose;
+use crate::app::shell::status::samples;
+use crate::app::ui::theme;
+use crate::render::Picture;
+
+impl App {
+    /// The pictures that figures are told of: those of A and B, or the one in the viewport.
+    pub(super) fn looked_at(&self) -> Vec<Arc<Picture>> {
+        match self.duel.pictures(&self.engine) {
+            Some(pictures) => pictures.to_vec(),
+            None => self.shown_picture().cloned().into_iter().collect(),
+        }
+    }
+
+    /// The error that is shown, where one is, and of which side, where there are two.
+    fn error_view(&self) -> Option<(Measure, Option<Side>)> {
+        match self.duel.layout {
+            Layout::Error(measure, side) => Some((measure, self.duel.is_on().then_some(side))),
+            _ => None,
+        }
+    }
+
+    /// The map in place of the picture, while one is there.
+    pub(super) fn map(&self) -> Option<&Map> {
+        match self.error_view() {
+            Some((measure, side)) => self.yardstick.map(measure, side),
+            None => self.duel.map(),
+        }
+    }
+
+    /// The kinds of views that there are now.
+    pub(super) fn layouts(&self) -> Vec<Layout> {
+        Layout::kinds(self.duel.is_on(), self.yardstick.held().is_some())
+    }
+
+    /// Brings figures, errors and maps in line with what is looked at.
+    pub(super) fn update_measures(&mut self, ctx: &Context) {
+        if let Err(error) = self.yardstick.poll() {
+            self.notices.failed(format!("The reference could not be used. {error}"));
+        }
+        let pictures = self.looked_at();
+        let area = pictures.first().and_then(|picture| self.rectangle.area(picture.size));
+        self.engine.set_shows_variance(self.duel.is_on() || area.is_some());
+        self.duel.update_part(ctx, pictures.clone(), area);
+        let seen = Seen {
+            tone: self.editor.document.tone,
+            main: self.duel.main_side(),
+            stored: self.versus,
+            is_snapshot: !self.duel.is_on() && self.snapshots.picture().is_some(),
+        };
+        self.yardstick.update(ctx, pictures, seen);
+        self.yardstick.update_map(ctx, self.error_view());
+        if matches!(self.duel.layout, Layout::Error(..)) && self.yardstick.held().is_none() {
+            self.duel.layout = Layout::default();
+        }
+    }
+
+    /// Shows how A and B, the rectangle and the reference are looked at and what is known of them.
+    pub(super) fn measure_rows(&mut self, ui: &mut Ui) {
+        let has_rectangle = self.rectangle.is_armed() || self.rectangle.is_set();
+        let has_reference = self.yardstick.held().is_some() || self.yardstick.is_loading();
+        if !(self.duel.is_on() || has_rectangle || has_reference) {
+            return;
+        }
+        let panel = egui::Panel::bottom("compare").frame(theme::panel_frame());
+        let asked = panel.show(ui, |ui| {
+            let view = self.view_row(ui);
+            let Some(picture) = self.looked_at().into_iter().next() else { return view };
+            if has_rectangle {
+                let told = (self.duel.part(), self.yardstick.errors(), self.biased());
+                let rectangle = &mut self.rectangle;
+                ui.horizontal_wrapped(|ui| {
+                    rows::rectangle(ui, rectangle, picture.size, told);
+                });
+            }
+            if !has_reference {
+                return view;
+            }
+            let looked_at = (picture.size, &self.editor.document.settings);
+            let row = |ui: &mut Ui| rows::reference(ui, &self.yardstick, looked_at);
+            ui.horizontal_wrapped(row).inner.or(view)
+        });
+        match asked.inner {
+            Some(Asked::Command(command)) => self.execute(&ui.ctx().clone(), command),
+            Some(Asked::Size(size)) => {
+                let document = &mut self.editor.document;
+                document.settings.film.size = size.to_array();
+                document.keep_size = true;
+                self.editor.name_edit("size of the film");
+            }
+            None => {}
+        }
+    }
+
+    /// How it is looked at where there is a choice, and what A and B say about each other.
+    fn view_row(&mut self, ui: &mut Ui) -> Option<Asked> {
+        let kinds = self.layouts();
+        if kinds.len() < 2 {
+            return None;
+        }
+        let of_two = self.duel.is_on();
+        let row = |ui: &mut Ui| {
+            panel::layouts(ui, &mut self.duel.layout, (&kinds, of_two));
+            if !of_two {
+                return None;
+            }
+            ui.separator();
+            match self.other_size() {
+                Some(size) => rows::other_size(ui, size),
+                None => {
+                    panel::verdict(ui, self.duel.comparison(), self.biased());
+                    None
+                }
+            }
+        };
+        ui.horizontal_wrapped(row).inner
+    }
+
+    /// The size of the snapshot that is compared, where the live picture has another.
+    fn other_size(&self) -> Option<UVec2> {
+        let size = self.duel.stored.as_ref()?.picture.as_ref()?.size;
+        self.engine.picture().is_some_and(|live| live.size != size).then_some(size)
+    }
+
+    /// Which sides are biased.
+    pub(super) fn biased(&self) -> [bool; 2] {
+        let document = &self.editor.document;
+        [Side::A, Side::B].map(|side| panel::is_biased(side, document, &self.duel))
+    }
+
+    /// Takes a reference from there.
+    pub(super) fn take_reference(&mut self, ctx: &Context, origin: Origin) {
+        if let Err(error) = self.yardstick.load(ctx, origin) {
+            self.notices.failed(error.to_string());
+        }
+    }
+
+    /// Makes the picture shown the reference: a snapshot, or the live one of the edited side.
+    fn take_picture(&mut self, ctx: &Context) {
+        let stored = self.snapshots.strip.shown_item();
+        let stored = stored.map(|item| (item.record.name.clone(), self.snapshots.file(item)));
+        let engine = self.duel.edited(&self.engine);
+        let origin = match (stored, engine.rendered(), engine.picture()) {
+            (Some((name, Some(file))), ..) => Origin::File(format!("snapshot {name}"), file),
+            (None, Some(settings), Some(picture)) if picture.complete => {
+                let spp = samples(picture.stats.samples_per_pixel);
+                let name = format!("the picture at {spp} spp");
+                Origin::Picture(name, picture.clone(), Box::new(settings.clone()))
+            }
+            _ => {
+                self.notices.failed(
+                    "There is no picture to measure against yet: every pixel needs a sample.",
+                );
+                return;
+            }
+        };
+        self.take_reference(ctx, origin);
+    }
+
+    /// Carries out one of the commands about rectangle and reference; whether it was one.
+    pub(super) fn execute_measure(&mut self, ctx: &Context, command: Command) -> bool {
+        match command {
+            Command::NextLayout => self.duel.layout = self.duel.layout.next(&self.layouts()),
+            Command::Rectangle => self.rectangle.arm(),
+            Command::SamplesHere => {
+                self.rectangle.is_alone = !self.rectangle.is_alone;
+                if !self.rectangle.is_set() {
+                    self.rectangle.arm();
+                    self.rectangle.is_alone = true;
+                }
+            }
+            Command::LoadReference => self.ask(ctx, Purpose::Reference),
+            Command::PictureAsReference => self.take_picture(ctx),
+            Command::RemoveReference => self.yardstick.remove(),
+            Command::SaveComparison if self.duel.is_on() || self.yardstick.held().is_some() => {
+                self.ask(ctx, Purpose::SaveComparison);
+            }
+            Command::SaveComparison => self.notices.failed(
+                "Nothing is compared: C sets two strategies against each other, Ctrl+Shift+S saves \
+                 the picture alone.",
+            ),
+            _ => return false,
+        }
+        true
+    }
+
+    /// Loads a reference from a path.
+    pub(super) fn load_reference(&mut self, ctx: &Context, path: PathBuf) {
+        self.take_reference(ctx, Origin::file(path));
+    }
+}

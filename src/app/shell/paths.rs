@@ -1,0 +1,126 @@
+//! Files that the window opens and saves.
+
+use std::path::{Path, PathBuf};
+
+use egui::Context;
+
+use super::App;
+use crate::app::jobs::dialogs::{Dialog, Dialogs, Purpose};
+use crate::app::shell::bars::PathBar;
+use crate::app::shell::save::Content;
+
+impl App {
+    /// Opens a path or `builtin:NAME`.
+    pub(super) fn open(&mut self, source: &str) {
+        self.path_bar = None;
+        self.engine.open(source);
+    }
+
+    /// Opens a dropped file, or measures against it; of a picture that could be either it asks.
+    pub(super) fn take_dropped(&mut self, ctx: &Context, path: &Path) {
+        let extension = path.extension().map(|extension| extension.to_ascii_lowercase());
+        self.dropped = None;
+        match extension.as_deref().and_then(std::ffi::OsStr::to_str) {
+            Some("npy") => self.load_reference(ctx, path.to_owned()),
+            Some("exr") => self.dropped = Some(path.to_owned()),
+            _ => self.open_unless_lost(&path.to_string_lossy()),
+        }
+    }
+
+    /// Does with a chosen path what it was asked for.
+    pub(super) fn take_path(&mut self, ctx: &Context, purpose: Purpose, path: PathBuf) {
+        if purpose == Purpose::Open {
+            self.open_unless_lost(&path.to_string_lossy());
+        } else if purpose == Purpose::Reference {
+            self.load_reference(ctx, path);
+        } else if self.engine.is_building() {
+            // The film is about to become that of another scene.
+            self.waiting.push((purpose, path));
+        } else {
+            self.save(ctx, purpose, path);
+        }
+    }
+
+    /// Saves what waited for a build to end.
+    pub(super) fn save_waiting(&mut self, ctx: &Context) {
+        if !self.engine.is_building() {
+            for (purpose, path) in std::mem::take(&mut self.waiting) {
+                self.save(ctx, purpose, path);
+            }
+        }
+    }
+
+    fn save(&mut self, ctx: &Context, purpose: Purpose, path: PathBuf) {
+        let Some(content) = self.content(ctx, purpose) else {
+            self.notices.failed("There is no picture to save yet.");
+            return;
+        };
+        let wake = ctx.clone();
+        let path = purpose.complete(path, &self.suggested_name(purpose));
+        if let Content::Scene(settings) = &content {
+            self.kept.writes(&path, settings.clone());
+        }
+        if let Err(error) = self.saver.start(path, content, move || wake.request_repaint()) {
+            self.notices.failed(error.to_string());
+        }
+    }
+
+    /// What saving writes at this moment; `None` where there is nothing yet.
+    fn content(&self, ctx: &Context, purpose: Purpose) -> Option<Content> {
+        if self.subject.is_some() && matches!(purpose, Purpose::SaveExr | Purpose::SavePng) {
+            return self.stored_content(purpose);
+        }
+        let document = &self.editor.document;
+        let engine = self.duel.edited(&self.engine);
+        let settings = engine.rendered()?;
+        match purpose {
+            Purpose::Open | Purpose::Reference => None,
+            Purpose::SaveComparison => Some(Content::View(Box::new(self.saved_view(ctx)))),
+            Purpose::SaveExr => Some(Content::Exr {
+                film: engine.session().snapshot(),
+                settings: settings.clone(),
+                seconds: engine
+                    .picture()
+                    .map_or([0.0; 2], |picture| [picture.stats.seconds, picture.stats.cpu_seconds]),
+            }),
+            Purpose::SavePng => {
+                Some(Content::Png { film: engine.session().snapshot(), tone: document.tone })
+            }
+            Purpose::SaveScene => {
+                // A film of the window's size is written as that size, so the picture is the same.
+                let mut saved = document.settings.clone();
+                saved.film.size = settings.film.size;
+                Some(Content::Scene(saved))
+            }
+        }
+    }
+
+    /// Asks for a path in the way that the options say.
+    pub(super) fn ask(&mut self, ctx: &Context, purpose: Purpose) {
+        // Beside the live picture it is that which is worked on.
+        let shown = self.snapshots.strip.shown_item().filter(|_| self.versus.is_none());
+        self.subject = shown.map(|item| item.entry.id.clone());
+        if self.dialogs == Dialogs::Typed {
+            self.ask_typed(purpose);
+        } else if self.dialog.is_none() {
+            let wake = ctx.clone();
+            match Dialog::open(purpose, &self.suggested(purpose), move || wake.request_repaint()) {
+                Ok(dialog) => self.dialog = Some(dialog),
+                Err(_) => self.ask_typed(purpose),
+            }
+        }
+    }
+
+    /// Shows the bar to type a path in.
+    pub(super) fn ask_typed(&mut self, purpose: Purpose) {
+        self.path_bar = Some(PathBar::new(purpose, self.suggested(purpose)));
+    }
+
+    /// A file beside what is open, or in the present folder.
+    fn suggested(&self, purpose: Purpose) -> PathBuf {
+        let here = std::env::current_dir().unwrap_or_default();
+        let name = self.suggested_name(purpose);
+        let folder = Path::new(&self.source).parent().filter(|folder| folder.is_dir());
+        folder.map_or_else(|| here.clone(), |folder| here.join(folder)).join(name)
+    }
+}

@@ -1,0 +1,165 @@
+//! Writes pictures and scenes on threads of their own, pictures from a consistent copy of the film.
+
+use std::fs::File;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, mpsc};
+
+use super::export::SavedView;
+use crate::error::{Error, Result};
+use crate::files;
+use crate::image::exr::{self, Header};
+use crate::image::png;
+use crate::image::tone::Tone;
+use crate::render::publish::resolve;
+use crate::render::{Film, Picture};
+use crate::scene::{self, Settings};
+
+/// What is to be written.
+pub enum Content {
+    /// A snapshot: the linear picture with its layers and all that is needed to go on.
+    Exr {
+        /// The film, once the session has copied it.
+        film: mpsc::Receiver<Film>,
+        /// What the film shows; its size, seed and limit are those of the film.
+        settings: Settings,
+        /// Seconds spent on it, and CPU time.
+        seconds: [f64; 2],
+    },
+    /// The picture as shown.
+    Png {
+        /// The film, once the session has copied it.
+        film: mpsc::Receiver<Film>,
+        /// How it is shown.
+        tone: Tone,
+    },
+    /// A scene file.
+    Scene(Settings),
+    /// What another file holds.
+    Copy(PathBuf),
+    /// A picture kept earlier, as shown.
+    Shown {
+        /// The picture.
+        picture: Arc<Picture>,
+        /// How it is shown.
+        tone: Tone,
+    },
+    /// A view with its figures.
+    View(Box<SavedView>),
+}
+
+/// A save under way.
+struct Save {
+    path: PathBuf,
+    result: mpsc::Receiver<Result<()>>,
+}
+
+/// The saves under way.
+#[derive(Default)]
+pub struct Saver {
+    saves: Vec<Save>,
+}
+
+impl Saver {
+    /// Starts to write `content` to `path`. `wake` is called when it is done.
+    ///
+    /// # Errors
+    /// When the system refuses to start a thread.
+    pub fn start(
+        &mut self,
+        path: PathBuf,
+        content: Content,
+        wake: impl FnOnce() + Send + 'static,
+    ) -> Result<()> {
+        let (sender, result) = mpsc::channel();
+        let target = path.clone();
+        std::thread::Builder::new()
+            .name("save".to_owned())
+            .spawn(move || {
+                // Nobody listens any more where the window was closed meanwhile.
+                let _ = sender.send(write(&target, content));
+                wake();
+            })
+            .map_err(|error| Error::io(&path, error))?;
+        self.saves.push(Save { path, result });
+        Ok(())
+    }
+
+    /// The saves that have ended since, with how.
+    pub fn poll(&mut self) -> Vec<(PathBuf, Result<()>)> {
+        let mut ended = Vec::new();
+        self.saves.retain(|save| match save.result.try_recv() {
+            Ok(result) => {
+                ended.push((save.path.clone(), result));
+                false
+            }
+            Err(mpsc::TryRecvError::Empty) => true,
+            Err(mpsc::TryRecvError::Disconnected) => {
+                let name = save.path.display().to_string();
+                let reason = "the save broke off; try again, or somewhere else";
+                ended.push((save.path.clone(), Err(Error::invalid(name, "", reason))));
+                false
+            }
+        });
+        ended
+    }
+
+    /// Waits for what is still being written; for the end of the program.
+    pub fn finish(&mut self) {
+        for save in self.saves.drain(..) {
+            if let Ok(Err(error)) = save.result.recv() {
+                // Nowhere is left to say it where nobody reads the standard error.
+                let _ = writeln!(std::io::stderr(), "{error}");
+            }
+        }
+    }
+}
+
+fn write(path: &Path, content: Content) -> Result<()> {
+    match content {
+        Content::Exr { film, settings, seconds } => {
+            let film = receive(path, &film)?;
+            exr::write(path, &film, &header(&settings, seconds)?)
+        }
+        Content::Png { film, tone } => {
+            let film = receive(path, &film)?;
+            let mut pixels = Vec::new();
+            resolve(&film, &mut pixels);
+            png::write(path, film.size(), &pixels, tone)
+        }
+        Content::Scene(settings) => scene::save(&settings, path),
+        Content::Copy(from) => {
+            let mut source = File::open(&from).map_err(|e| Error::io(&from, e))?;
+            files::replace(path, |file| match std::io::copy(&mut source, file) {
+                Ok(_) => Ok(()),
+                Err(error) => Err(Error::io(path, error)),
+            })
+        }
+        Content::View(view) => view.write(path),
+        Content::Shown { picture, tone } => png::write(path, picture.size, &picture.pixels, tone),
+    }
+}
+
+/// The film, once the session has copied it; `path` is what it is wanted for.
+pub fn receive(path: &Path, film: &mpsc::Receiver<Film>) -> Result<Film> {
+    film.recv().map_err(|_| {
+        let reason = "there is no picture to save, or too little memory for a copy of it";
+        Error::invalid(path.display().to_string(), "", reason)
+    })
+}
+
+/// What the snapshot says about how it came about, in so many seconds and so many of CPU time.
+pub fn header(settings: &Settings, [seconds, cpu_seconds]: [f64; 2]) -> Result<Header> {
+    let strategy = toml::to_string(&settings.strategy)
+        .map_err(|error| Error::invalid("", "strategy", error.to_string()))?;
+    Ok(Header {
+        scene: scene::to_toml(settings, None)?,
+        strategy,
+        seed: settings.film.seed,
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        wall_seconds: seconds,
+        cpu_seconds_render: cpu_seconds,
+        files: scene::fingerprints(settings)?,
+        ..Header::default()
+    })
+}

@@ -1,0 +1,195 @@
+//! Snapshots in the window: keeping the picture, flipping through the strip, going on from one.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use egui::{Context, Ui};
+
+use super::App;
+use crate::app::command::Command;
+use crate::app::compare::second_side::Stored;
+use crate::app::document::Side;
+use crate::app::jobs::dialogs::Purpose;
+use crate::app::shell::save::Content;
+use crate::app::snapshots::{Item, Keep, strategy};
+use crate::app::ui::theme;
+use crate::render::Picture;
+
+/// How many pictures may be on their way to the disk, each of which takes the memory of its film.
+const MOST_AT_ONCE: usize = 2;
+
+impl App {
+    /// Brings the strip in line with the disk, and keeps the picture where that was asked for.
+    pub(super) fn update_snapshots(&mut self, ctx: &Context) {
+        self.snapshots.update(ctx.text_edit_focused(), &mut self.notices);
+        // The film of an edit that is being built is about to become that of another scene.
+        let may_keep = !self.engine.is_building() && self.snapshots.keeping() < MOST_AT_ONCE;
+        if self.snapshots.wants_keep && may_keep {
+            self.snapshots.wants_keep = false;
+            self.keep();
+        }
+    }
+
+    fn keep(&mut self) {
+        let engine = self.duel.edited(&self.engine);
+        let (Some(settings), Some(picture)) = (engine.rendered(), engine.picture()) else {
+            self.notices.failed("There is no picture to keep yet.");
+            return;
+        };
+        let (title, strategy) = (self.short_title(), strategy(settings));
+        let name = match title.ends_with(&strategy) {
+            true => title,
+            false => format!("{title} {strategy}"),
+        };
+        let keep = Keep {
+            settings: settings.clone(),
+            seconds: picture.stats.seconds,
+            cpu_seconds: picture.stats.cpu_seconds,
+            tone: self.editor.document.tone,
+            name: self.snapshots.strip.free_name(&name),
+            film: engine.session().snapshot(),
+        };
+        self.snapshots.keep(keep);
+    }
+
+    /// What to call a source: a snapshot of the strip by its name.
+    pub(super) fn name_of(&self, source: String) -> String {
+        self.snapshots.name_of(Path::new(&source)).map_or(source.clone(), str::to_owned)
+    }
+
+    /// The title without the ending of a file.
+    fn short_title(&self) -> String {
+        let title = self.title();
+        let stem = title.rsplit_once('.').map(|(stem, _)| stem);
+        stem.filter(|stem| !stem.is_empty()).unwrap_or(&title).to_owned()
+    }
+
+    /// The picture in the viewport: a snapshot, or the live one.
+    pub(super) fn shown_picture(&self) -> Option<&Arc<Picture>> {
+        self.snapshots.picture().or_else(|| self.engine.picture())
+    }
+
+    /// Carries out one of the commands about snapshots; whether it was one.
+    pub(super) fn execute_stored(&mut self, ctx: &Context, command: Command) -> bool {
+        match command {
+            Command::KeepSnapshot => self.snapshots.wants_keep = true,
+            Command::PreviousSnapshot => self.snapshots.strip.show_previous(),
+            Command::NextSnapshot if self.versus.is_some() && self.is_last_shown() => {}
+            Command::NextSnapshot => self.snapshots.strip.show_next(),
+            // The key also closes what is open in front.
+            Command::LivePicture if ctx.any_popup_open() => {}
+            Command::LivePicture => self.leave(ctx),
+            Command::CompareAsA => self.set_against_live(Side::A),
+            Command::CompareAsB => self.set_against_live(Side::B),
+            Command::Compare if self.versus.is_some() => self.snapshots.strip.show(None),
+            Command::SwapSides if self.versus.is_some() => {
+                self.versus = self.versus.map(Side::other);
+            }
+            Command::ContinueSnapshot => self.go_on_from_shown(),
+            Command::DeleteSnapshot => self.snapshots.delete(),
+            Command::UndoDelete => self.snapshots.undo_delete(),
+            Command::FoldStrip => self.snapshots.strip.toggle(),
+            _ => return false,
+        }
+        true
+    }
+
+    fn is_last_shown(&self) -> bool {
+        self.snapshots
+            .strip
+            .shown()
+            .is_some_and(|index| index + 1 == self.snapshots.strip.items().len())
+    }
+
+    /// Compares the snapshot shown, as that side, with the live picture. What two strategies were
+    /// compared before goes on with the one that was edited.
+    fn set_against_live(&mut self, side: Side) {
+        if self.snapshots.strip.shown().is_none() {
+            self.notices.failed(
+                "There is no snapshot to compare with: K keeps one, the left arrow flips to it.",
+            );
+            return;
+        }
+        self.versus = Some(side);
+        let document = &mut self.editor.document;
+        if document.compared.take().is_some() {
+            self.editor.name_edit("comparison");
+        }
+    }
+
+    /// Brings the duel in line with the snapshot that is compared, if one is.
+    pub(super) fn update_versus(&mut self) {
+        let shown = self.snapshots.strip.shown_item();
+        self.versus = self.versus.filter(|_| shown.is_some());
+        if self.editor.document.compared.is_some() {
+            // An edit or an undo began a comparison of strategies.
+            self.versus = None;
+        }
+        self.duel.stored = self.versus.zip(shown).map(|(side, item)| Stored {
+            side,
+            name: item.record.name.clone(),
+            picture: item.picture().filter(|picture| !picture.variance.is_empty()).cloned(),
+            is_biased: item.record.strategy.ends_with("biased"),
+        });
+        // Noise is told of both sides, and of a rectangle.
+        let measures = self.versus.is_some() || self.rectangle.is_set();
+        self.snapshots.strip.wants_variance = measures;
+    }
+
+    fn go_on_from_shown(&mut self) {
+        let shown = self.snapshots.strip.shown_item();
+        if let Some(file) = shown.and_then(|item| self.snapshots.file(item)) {
+            self.open_unless_lost(&file.to_string_lossy());
+        }
+    }
+
+    /// The snapshot that is to be saved, where that is not the live picture.
+    fn subject(&self) -> Option<&Item> {
+        self.subject.as_ref().and_then(|id| self.snapshots.strip.find(id))
+    }
+
+    /// The name to suggest for a file of what is to be saved.
+    pub(super) fn suggested_name(&self, purpose: Purpose) -> PathBuf {
+        let extension = purpose.extension().unwrap_or_default();
+        match self.subject() {
+            // Not as an extension: a name may hold dots, and what would be folders.
+            Some(item) => {
+                let name = item.record.name.replace(['/', '\\', ':'], "-");
+                format!("{name}.{extension}").into()
+            }
+            None => Path::new(&self.title()).with_extension(extension),
+        }
+    }
+
+    /// What saving writes of the snapshot that was shown when it was asked for; `None` where it is
+    /// not there (any more).
+    pub(super) fn stored_content(&self, purpose: Purpose) -> Option<Content> {
+        let item = self.subject()?;
+        match purpose {
+            Purpose::SaveExr => Some(Content::Copy(self.snapshots.file(item)?)),
+            Purpose::SavePng => {
+                let (picture, tone) = (item.picture()?.clone(), self.editor.document.tone);
+                Some(Content::Shown { picture, tone })
+            }
+            _ => None,
+        }
+    }
+
+    /// The strip under the picture, where it is wanted.
+    pub(super) fn strip_row(&mut self, ui: &mut Ui) {
+        if !self.snapshots.strip.is_open() {
+            return;
+        }
+        let live = self.engine.picture().cloned();
+        let panel = egui::Panel::bottom("snapshots").frame(theme::panel_frame());
+        let asked = panel
+            .show(ui, |ui| {
+                crate::app::snapshots::panel::show(ui, &mut self.snapshots, live.as_ref())
+            })
+            .inner;
+        let ctx = ui.ctx().clone();
+        for command in asked {
+            self.execute(&ctx, command);
+        }
+    }
+}

@@ -1,0 +1,293 @@
+//! The status line: how far the picture is, what it costs, how it is shown, what is under the
+//! pointer.
+
+use egui::{Align, Button, DragValue, Layout, RichText, Ui};
+use glam::UVec2;
+
+use crate::app::command::Command;
+use crate::app::compare::panel;
+use crate::app::jobs::live_render::Engine;
+use crate::app::panels::Panel;
+use crate::app::picture::viewport::Viewport;
+use crate::app::snapshots::{Item, Snapshots};
+use crate::app::ui::theme::{color, space};
+use crate::app::ui::widgets::{count, finite};
+use crate::image::tone::{Channel, Tone};
+use crate::render::{Layer, RenderStats};
+
+/// Room that the zoom takes.
+const ZOOM_WIDTH: f32 = 70.0;
+/// Room that the value under the pointer takes.
+const PROBE_WIDTH: f32 = 280.0;
+
+/// Shows the line.
+pub fn show(
+    ui: &mut Ui,
+    panel: &mut Panel<'_>,
+    engine: &Engine,
+    viewport: &Viewport,
+    snapshots: &Snapshots,
+) {
+    ui.horizontal_centered(|ui| {
+        let (text, help) = if engine.paused() {
+            ("Resume", "Go on sampling.")
+        } else {
+            ("Pause", "Stop sampling and keep the picture.")
+        };
+        let key = ui.ctx().format_shortcut(&Command::PauseResume.shortcut());
+        let button = Button::new(text).min_size(egui::vec2(64.0, 0.0));
+        if ui.add(button).on_hover_text(format!("{help}  [{key}]")).clicked() {
+            panel.commands.push(Command::PauseResume);
+        }
+        let stored = snapshots.strip.shown_item().filter(|_| panel.duel.stored.is_none());
+        if stored.is_none() {
+            bias(ui, panel);
+        }
+        match engine.picture() {
+            _ if let Some(item) = stored => stored_figures(ui, item),
+            Some(picture) => progress(ui, &picture.stats, engine, panel.turns),
+            None => {
+                let opening = engine.opening().is_some() || engine.built().is_some();
+                let text =
+                    if opening { "Waiting for the first picture …" } else { "Nothing is open." };
+                ui.weak(text);
+            }
+        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            // What does not fit beside the figures is left out, the least needed first.
+            display(ui, panel);
+            if let Some(picture) = snapshots.picture().or_else(|| engine.picture())
+                && ui.available_width() > ZOOM_WIDTH
+            {
+                ui.separator();
+                zoom(ui, viewport.scale(picture.size));
+            }
+            if ui.available_width() > PROBE_WIDTH {
+                probe(ui, viewport);
+            }
+        });
+    });
+}
+
+/// A picture that will never be quite right says so; of two, which one it is.
+fn bias(ui: &mut Ui, panel: &Panel<'_>) {
+    if let Some(text) = panel::bias(&panel.editor.document, panel.duel) {
+        let help = "Ray marching is on (Strategy, Advanced): this picture is not quite right, and \
+                    more samples will not mend that.";
+        ui.label(RichText::new(text).color(color::WARNING)).on_hover_text(help);
+    }
+}
+
+/// Of a snapshot in place of the live picture.
+fn stored_figures(ui: &mut Ui, item: &Item) {
+    let record = &item.record;
+    if item.picture().is_none() {
+        ui.label(RichText::new(format!("Reading {} …", record.name)).color(color::ACCENT));
+        return;
+    }
+    let spp = samples(record.spp);
+    let text = RichText::new(format!("Stored: {}, {spp} spp", record.name)).color(color::ACCENT);
+    ui.add(egui::Label::new(text).truncate())
+        .on_hover_text("A snapshot, not the picture that is being rendered. Escape goes back.");
+}
+
+/// A number of samples in about two digits or more.
+pub fn samples(spp: f64) -> String {
+    if spp < 10.0 { format!("{spp:.1}") } else { format!("{spp:.0}") }
+}
+
+fn progress(ui: &mut Ui, stats: &RenderStats, engine: &Engine, turns: usize) {
+    let spp = samples(stats.samples_per_pixel);
+    figure(ui, &spp, "spp", "Samples per pixel so far.", 38.0);
+    figure(ui, &seconds(stats.seconds), "", "Time spent on this picture.", 50.0);
+    let noise = match stats.noise {
+        Some(noise) => percent(noise),
+        None => "–".to_owned(),
+    };
+    let help = "Noise: the standard error of the picture relative to its brightness. It halves \
+                when the samples quadruple.";
+    figure(ui, &noise, "% noise", help, 42.0);
+    let rate = if stats.seconds > 0.0 { stats.tracking_steps as f64 / stats.seconds } else { 0.0 };
+    let help = "Tentative collisions a second: steps through the volume, real and null.";
+    figure(ui, &count(rate), "collisions/s", help, 50.0);
+    if stats.non_finite > 0 {
+        let text = format!("{} samples dropped", stats.non_finite);
+        ui.label(RichText::new(text).color(color::WARNING))
+            .on_hover_text("Samples that were not finite numbers; they count as black.");
+    }
+    let state = match (engine.paused(), stats.finished) {
+        (true, _) => "paused",
+        (false, false) if engine.held() => "waiting for the trial",
+        (false, true) => "finished",
+        (false, false) if engine.picture().is_some_and(|picture| picture.focus.is_some()) => {
+            "rectangle only"
+        }
+        (false, false) => return ending(ui, stats, engine, turns),
+    };
+    ui.label(RichText::new(state).color(color::ACCENT));
+}
+
+/// How long a render with an end will take to get there, one of so many that take turns.
+fn ending(ui: &mut Ui, stats: &RenderStats, engine: &Engine, turns: usize) {
+    let wanted = engine.built().map_or(0, |built| built.settings.film.spp);
+    // A rectangle that gets all samples has another pace than the picture.
+    let is_whole = engine.picture().is_some_and(|picture| picture.focus.is_none());
+    let Some(left) = seconds_left(stats, wanted).filter(|_| is_whole) else { return };
+    let left = left * turns.max(1) as f64;
+    let text = RichText::new(format!("{} left", time_left(left))).color(color::TEXT_DIM);
+    ui.label(text).on_hover_text(format!("Until each pixel has {wanted} samples."));
+}
+
+/// Seconds that are left, in words.
+pub fn time_left(left: f64) -> String {
+    if left < 60.0 { format!("{:.0} s", left.ceil()) } else { seconds(left) }
+}
+
+/// At the pace so far; none before there is one, at the end, and where there is no end.
+fn seconds_left(stats: &RenderStats, wanted: u32) -> Option<f64> {
+    let have = stats.samples_per_pixel;
+    let is_known = have >= 1.0 && have < f64::from(wanted);
+    is_known.then(|| stats.seconds * (f64::from(wanted) / have - 1.0))
+}
+
+/// A number set to the right in a field of fixed width, so that nothing jumps, with its unit.
+fn figure(ui: &mut Ui, value: &str, unit: &str, help: &str, width: f32) {
+    ui.scope(|ui| {
+        ui.spacing_mut().item_spacing.x = space::TIGHT;
+        let size = egui::vec2(width, space::ROW_HEIGHT);
+        let layout = Layout::right_to_left(Align::Center);
+        ui.allocate_ui_with_layout(size, layout, |ui| {
+            ui.set_min_size(size);
+            ui.label(RichText::new(value).color(color::TEXT_STRONG)).on_hover_text(help);
+        });
+        if !unit.is_empty() {
+            ui.label(RichText::new(unit).color(color::TEXT_DIM)).on_hover_text(help);
+        }
+    });
+}
+
+/// A fraction in percent, in about three digits.
+pub fn percent(fraction: f64) -> String {
+    let percent = 100.0 * fraction;
+    let decimals = match percent {
+        _ if percent < 10.0 => 2,
+        _ if percent < 100.0 => 1,
+        _ => 0,
+    };
+    format!("{percent:.decimals$}")
+}
+
+fn seconds(seconds: f64) -> String {
+    if seconds < 60.0 {
+        return format!("{seconds:.1} s");
+    }
+    let minutes = (seconds / 60.0).floor();
+    format!("{minutes:.0}:{:02.0} min", (seconds - 60.0 * minutes).floor())
+}
+
+fn zoom(ui: &mut Ui, scale: f32) {
+    let text = format!("{:.0} %", 100.0 * scale);
+    ui.label(RichText::new(text).color(color::TEXT_DIM))
+        .on_hover_text("Zoom of the picture. Ctrl and the wheel zoom to pixels; Home fits it.");
+}
+
+fn probe(ui: &mut Ui, viewport: &Viewport) {
+    let Some(probe) = viewport.probe else { return };
+    ui.separator();
+    if let Some((number, layer)) = probe.number {
+        let unit = layer.map_or("", unit_of);
+        let UVec2 { x, y } = probe.pixel;
+        let text = format!("{x:>4}, {y:<4} {:>9} {unit}", channel(number));
+        ui.label(RichText::new(text).monospace().color(color::TEXT))
+            .on_hover_text("The pixel under the pointer and its number in the map that is shown.");
+        return;
+    }
+    let [r, g, b, _] = probe.value;
+    let text = format!(
+        "{:>4}, {:<4} {:>8} {:>8} {:>8}",
+        probe.pixel.x,
+        probe.pixel.y,
+        channel(r),
+        channel(g),
+        channel(b)
+    );
+    ui.label(RichText::new(text).monospace().color(color::TEXT))
+        .on_hover_text("The pixel under the pointer and its linear red, green and blue.");
+}
+
+/// What the numbers of a layer count.
+fn unit_of(layer: Layer) -> &'static str {
+    match layer {
+        Layer::Depth => "length",
+        Layer::Samples => "samples",
+        Layer::Noise => "error",
+        Layer::Steps => "steps",
+        Layer::Emission | Layer::Direct | Layer::Indirect | Layer::Background => "",
+    }
+}
+
+/// A channel in about four digits.
+fn channel(value: f32) -> String {
+    if value == 0.0 || (0.001..10_000.0).contains(&value.abs()) {
+        let digits = if value.abs() >= 100.0 { 1 } else { 4 };
+        format!("{value:.digits$}")
+    } else {
+        format!("{value:.1e}")
+    }
+}
+
+/// What the picture is shown by, in a word.
+fn curve_name(tone: Tone) -> &'static str {
+    match tone.channel {
+        Channel::Color => tone.curve.name(),
+        other => other.name(),
+    }
+}
+
+/// Exposure and tone curve, from right to left.
+fn display(ui: &mut Ui, panel: &mut Panel<'_>) {
+    let mut edit = None;
+    let tone = &mut panel.editor.document.tone;
+    let button = Button::new(curve_name(*tone)).min_size(egui::vec2(58.0, 0.0));
+    let help = "Tone curve: filmic rolls bright fire off softly, AgX more softly, linear clips it. \
+                For display and PNG only. Click for the next.  [T]";
+    if ui.add(button).on_hover_text(help).clicked() {
+        tone.curve = tone.curve.next();
+        edit = Some("tone curve");
+    }
+    let field = DragValue::new(&mut tone.exposure)
+        .range(-20.0..=20.0)
+        .speed(0.02)
+        .custom_formatter(|value, _| format!("{value:+.1}"))
+        .custom_parser(finite);
+    let response = ui.add_sized([44.0, space::ROW_HEIGHT], field).accessible_name("Exposure");
+    let help = "Exposure in stops, for display and PNG only. Drag, click to type, E and Shift+E \
+                for half stops, A for what suits the picture.";
+    if response.on_hover_text(help).changed() {
+        edit = Some("exposure");
+    }
+    ui.label(RichText::new("exposure").color(color::TEXT_DIM));
+    if let Some(layer) = panel.wanted.layer {
+        let text = RichText::new(format!("Layer: {}", layer.name())).color(color::ACCENT);
+        ui.label(text)
+            .on_hover_text("Shown in place of the picture. Display, in the panel, has it.");
+    }
+    if let Some(name) = edit {
+        panel.editor.name_edit(name);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_time_left_is_that_of_the_samples_left() {
+        let stats = RenderStats { samples_per_pixel: 16.0, seconds: 8.0, ..Default::default() };
+        assert_eq!(seconds_left(&stats, 64), Some(24.0));
+        assert_eq!(seconds_left(&stats, 16), None, "it is there");
+        assert_eq!(seconds_left(&stats, 0), None, "there is no end");
+        let stats = RenderStats { samples_per_pixel: 0.2, ..stats };
+        assert_eq!(seconds_left(&stats, 64), None, "the pace is not known yet");
+    }
+}

@@ -1,0 +1,56 @@
+//! The bar that asks before changes of the scene are lost.
+
+use egui::{Button, RichText, Ui};
+
+use crate::app::ui::theme::color;
+
+/// What would lose them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Losing {
+    /// The window would close.
+    Close,
+    /// A scene, a volume or a snapshot would take their place.
+    Open(String),
+}
+
+/// What the user says to it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Answer {
+    /// Save the scene first.
+    Save,
+    /// Go on without.
+    Discard,
+    /// Don't go on.
+    Stay,
+}
+
+/// Asks about the changes of the scene called `title`. A `fresh` question takes the keyboard, and
+/// is fresh until it has.
+pub fn ask(ui: &mut Ui, title: &str, losing: &Losing, fresh: &mut bool) -> Option<Answer> {
+    let discard = match losing {
+        Losing::Close => "Close without saving",
+        Losing::Open(_) => "Open without saving",
+    };
+    let buttons = [
+        ("Save scene…", Answer::Save, "Save every setting as a scene file first."),
+        (discard, Answer::Discard, "The changes are lost."),
+        ("Cancel", Answer::Stay, "Go on working on it."),
+    ];
+    ui.horizontal_wrapped(|ui| {
+        let text = format!("{title} has changes that are not saved.");
+        ui.label(RichText::new(text).color(color::WARNING));
+        let mut answer = None;
+        for (text, says, help) in buttons {
+            let button = ui.add(Button::new(text)).on_hover_text(help);
+            if button.clicked() {
+                answer = Some(says);
+            }
+            if *fresh && says == Answer::Save {
+                *fresh = !button.has_focus();
+                button.request_focus();
+            }
+        }
+        answer
+    })
+    .inner
+}

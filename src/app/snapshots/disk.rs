@@ -1,0 +1,289 @@
+//! Two threads that do what the strip needs of the disk: one writes, in the order it was asked, and
+//! the other reads pictures meanwhile.
+
+use std::path::PathBuf;
+use std::sync::{Arc, mpsc};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use egui::ColorImage;
+
+use super::record::Record;
+use super::store::{Entry, Fresh, Listing, Store};
+use super::thumbnail::{self, Thumbnail};
+use crate::app::shell::save::{header, receive};
+use crate::error::{Error, Result};
+use crate::image::exr;
+use crate::image::tone::Tone;
+use crate::render::estimate::samples_per_pixel;
+use crate::render::publish::{resolve, resolve_variance};
+use crate::render::{Film, Picture};
+use crate::scene::Settings;
+
+/// What was left behind is removed at a start this much later; another window may be at work on
+/// what is fresher.
+const LEFT_BEHIND: Duration = Duration::from_secs(3600);
+
+/// What the disk is asked for.
+pub enum Job {
+    /// Everything that is there, after what was left behind is removed.
+    List,
+    /// Keep a picture.
+    Keep(Box<Keep>),
+    /// Another name or note.
+    Describe(String, Record),
+    /// Put a snapshot aside.
+    Delete(String),
+    /// Bring it back.
+    Restore(String),
+    /// Remove these for good, which were deleted.
+    Forget(Vec<String>),
+    /// Read the picture of this snapshot.
+    Read(Entry),
+    /// Read it with the variance of its pixels, which takes as much memory as its film meanwhile.
+    ReadWithVariance(Entry),
+}
+
+/// A picture to keep.
+pub struct Keep {
+    /// The film, once the session has copied it.
+    pub film: mpsc::Receiver<Film>,
+    /// What it shows, with the size, seed and limit of the film.
+    pub settings: Settings,
+    /// Seconds spent on it.
+    pub seconds: f64,
+    /// CPU time spent on it, in seconds.
+    pub cpu_seconds: f64,
+    /// How it is shown.
+    pub tone: Tone,
+    /// What it is called.
+    pub name: String,
+}
+
+/// A snapshot with its small picture.
+pub type Pictured = (Entry, Option<ColorImage>);
+
+/// What the disk has to say.
+pub enum Report {
+    /// What is there, and what else is.
+    Listed(Vec<Pictured>, Vec<String>),
+    /// A picture is kept.
+    Kept {
+        /// As it is on the disk.
+        kept: Pictured,
+        /// The picture.
+        picture: Arc<Picture>,
+        /// What had to go so that the rest keeps within the limit.
+        gone: Vec<Entry>,
+    },
+    /// A picture could not be kept.
+    NotKept(String),
+    /// The picture of a snapshot, or why it could not be read.
+    Read(String, Result<Arc<Picture>, String>),
+    /// A deleted snapshot could not be brought back.
+    Lost(String, String),
+    /// Something else could not be done.
+    Failed(String),
+}
+
+/// The handles of the threads. Dropping it waits for what is being written.
+pub struct Clerk {
+    writer: Desk,
+    reader: Desk,
+    reports: mpsc::Receiver<Report>,
+}
+
+/// One of the threads.
+struct Desk {
+    jobs: Option<mpsc::Sender<Job>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+/// What a thread works with.
+struct Bench {
+    store: Option<Store>,
+    limit: u64,
+    reports: mpsc::Sender<Report>,
+}
+
+impl Clerk {
+    /// Starts the threads on `store` (`None`: there is no place for one), which is to take `limit`
+    /// bytes at most. `on_report` is called after each report.
+    ///
+    /// # Errors
+    /// When the system refuses to start threads.
+    pub fn new(
+        store: Option<Store>,
+        limit: u64,
+        on_report: impl Fn() + Clone + Send + 'static,
+    ) -> Result<Self> {
+        let (sender, reports) = mpsc::channel();
+        let desk = |name: &str| {
+            let bench = Bench { store: store.clone(), limit, reports: sender.clone() };
+            Desk::new(name, bench, on_report.clone())
+        };
+        Ok(Self { writer: desk("snapshots")?, reader: desk("snapshot")?, reports })
+    }
+
+    /// Asks the disk for something.
+    pub fn ask(&self, job: Job) {
+        let reads = matches!(job, Job::Read(_) | Job::ReadWithVariance(_));
+        let desk = if reads { &self.reader } else { &self.writer };
+        if let Some(jobs) = &desk.jobs {
+            // The thread lives as long as its desk.
+            let _ = jobs.send(job);
+        }
+    }
+
+    /// The next report, if there is one.
+    pub fn poll(&self) -> Option<Report> {
+        self.reports.try_recv().ok()
+    }
+
+    /// Waits for everything that was asked for. Nothing is done any more afterwards.
+    pub fn finish(&mut self) {
+        self.writer.finish();
+        self.reader.finish();
+    }
+}
+
+impl Drop for Clerk {
+    fn drop(&mut self) {
+        self.finish();
+    }
+}
+
+impl Desk {
+    fn new(name: &str, bench: Bench, on_report: impl Fn() + Send + 'static) -> Result<Self> {
+        let (jobs, todo) = mpsc::channel();
+        let thread = std::thread::Builder::new()
+            .name(name.to_owned())
+            .spawn(move || {
+                while let Ok(job) = todo.recv() {
+                    bench.work(job);
+                    on_report();
+                }
+            })
+            .map_err(|error| Error::io("the thread for snapshots", error))?;
+        Ok(Self { jobs: Some(jobs), thread: Some(thread) })
+    }
+
+    fn finish(&mut self) {
+        self.jobs = None;
+        if let Some(thread) = self.thread.take() {
+            // A panic over there was reported there already.
+            let _ = thread.join();
+        }
+    }
+}
+
+impl Bench {
+    fn work(&self, job: Job) {
+        let told = match &self.store {
+            Some(store) => self.report(store, job),
+            None => no_place(&job),
+        };
+        if let Some(report) = told {
+            // The strip may have gone.
+            let _ = self.reports.send(report);
+        }
+    }
+
+    fn report(&self, store: &Store, job: Job) -> Option<Report> {
+        let done = match job {
+            Job::List => return Some(list(store)),
+            Job::Keep(keep) => {
+                let kept = self.keep(store, *keep);
+                return Some(kept.unwrap_or_else(|error| Report::NotKept(error.to_string())));
+            }
+            Job::Read(entry) => {
+                let picture = read(store, &entry).map_err(|error| error.to_string());
+                return Some(Report::Read(entry.id, picture));
+            }
+            Job::ReadWithVariance(entry) => {
+                let picture = read_with_variance(store, &entry).map_err(|error| error.to_string());
+                return Some(Report::Read(entry.id, picture));
+            }
+            Job::Describe(id, record) => store.describe(&id, &record),
+            Job::Delete(id) => store.delete(&id),
+            Job::Restore(id) => {
+                let lost = store.restore(&id).err();
+                return lost.map(|error| Report::Lost(id, error.to_string()));
+            }
+            Job::Forget(ids) => {
+                store.forget(&ids);
+                Ok(())
+            }
+        };
+        done.err().map(|error| Report::Failed(error.to_string()))
+    }
+
+    fn keep(&self, store: &Store, keep: Keep) -> Result<Report> {
+        let Keep { film, mut settings, seconds, cpu_seconds, tone, name } = keep;
+        let film = receive(&PathBuf::from(&name), &film)?;
+        settings.film.size = film.size().to_array();
+        let mut picture = blank(&film.size().to_array());
+        picture.stats.noise = resolve(&film, &mut picture.pixels);
+        picture.stats.samples_per_pixel = samples_per_pixel(&film);
+        picture.stats.seconds = seconds;
+        let fresh = Fresh {
+            film: &film,
+            header: &header(&settings, [seconds, cpu_seconds])?,
+            record: Record::new(name, &settings, &picture.stats),
+            thumbnail: &Thumbnail::of(&picture),
+            tone,
+        };
+        let entry = store.add(fresh)?;
+        let gone = store.make_room(self.limit, &entry.id);
+        Ok(Report::Kept { kept: pictured(store, entry), picture: Arc::new(picture), gone })
+    }
+}
+
+fn list(store: &Store) -> Report {
+    store.clean(LEFT_BEHIND);
+    let Listing { entries, problems } = store.list();
+    let entries = entries.into_iter().map(|entry| pictured(store, entry)).collect();
+    Report::Listed(entries, problems)
+}
+
+fn pictured(store: &Store, entry: Entry) -> Pictured {
+    let thumbnail = thumbnail::read(&store.thumbnail(&entry.id));
+    (entry, thumbnail)
+}
+
+fn read(store: &Store, entry: &Entry) -> Result<Arc<Picture>> {
+    let (size, pixels) = exr::read_picture(&store.picture(&entry.id))?;
+    let Record { spp, seconds, noise, .. } = entry.record;
+    let mut picture = Picture { pixels, ..blank(&size.to_array()) };
+    picture.stats.samples_per_pixel = spp;
+    picture.stats.seconds = seconds;
+    picture.stats.noise = noise;
+    Ok(Arc::new(picture))
+}
+
+fn read_with_variance(store: &Store, entry: &Entry) -> Result<Arc<Picture>> {
+    let exr::Snapshot { film, header } = exr::read_snapshot(&store.picture(&entry.id))?;
+    let mut picture = blank(&film.size().to_array());
+    picture.stats.noise = resolve(&film, &mut picture.pixels);
+    resolve_variance(&film, &mut picture.variance);
+    picture.fewest_samples = film.sample_range().0;
+    picture.stats.samples_per_pixel = samples_per_pixel(&film);
+    picture.stats.seconds = header.wall_seconds;
+    picture.stats.cpu_seconds = header.cpu_seconds_render;
+    Ok(Arc::new(picture))
+}
+
+/// A picture without pixels yet.
+fn blank(size: &[u32; 2]) -> Picture {
+    Picture { size: (*size).into(), pixels: Vec::new(), complete: true, ..Picture::default() }
+}
+
+/// Without a place nothing can be kept, and nothing else can be asked for.
+fn no_place(job: &Job) -> Option<Report> {
+    let text = "There is no folder to keep snapshots in. Set FLAMBEAU_DATA to one.";
+    match job {
+        Job::Keep(_) => Some(Report::NotKept(text.to_owned())),
+        Job::List => Some(Report::Listed(Vec::new(), Vec::new())),
+        _ => None,
+    }
+}

@@ -1,0 +1,172 @@
+//! Several renders of one scene on the same threads and in turns, so that all have had the same
+//! share whenever they are compared.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use glam::UVec2;
+
+use super::compare::NoiseHistory;
+use super::estimate::{FEWEST_FOR_VARIANCE, FilmStats, samples_per_pixel};
+use super::film::Film;
+use super::pool::{Failure, Pool};
+use super::progressive::{Engine, Step};
+use super::schedule::Limits;
+use super::turns::{self, Account, Share};
+use crate::error::Result;
+use crate::transport::PixelSampler;
+
+/// What became of one side.
+pub struct RenderedSide {
+    /// The film, consistent however the render ended.
+    pub film: Film,
+    /// CPU time of the threads that sampled it, in seconds.
+    pub cpu_seconds: f64,
+    /// Seconds during which they did.
+    pub seconds: f64,
+    /// How its noise went down.
+    pub history: NoiseHistory,
+    /// The sample that ended it.
+    pub failure: Option<Failure>,
+}
+
+/// How much is rendered of each side.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Amount {
+    /// Samples a pixel; 0: as many as fit the counts.
+    pub spp: u32,
+    /// CPU time of the sampling threads, in seconds. With it the sides get equal shares of that,
+    /// without it of samples. It ends with a whole piece of work, so it is exceeded by a little,
+    /// which the sides tell.
+    pub cpu_seconds: Option<f64>,
+    /// Whether all pixels get equally many samples, two at least, whatever time that takes. Where
+    /// there are few of them, one part of the picture would else count more than the other.
+    pub evenly: bool,
+}
+
+impl Amount {
+    /// How much of it a side has had, in 0..=1; 0 where there is no limit.
+    pub fn part(&self, account: &Account) -> f64 {
+        let by_samples = if self.spp > 0 { account.samples / f64::from(self.spp) } else { 0.0 };
+        let by_time = self.cpu_seconds.map_or(0.0, |end| account.cpu_seconds / end);
+        by_samples.max(by_time).min(1.0)
+    }
+
+    fn limits(&self) -> Limits {
+        Limits { spp: self.spp, seconds: None }
+    }
+}
+
+/// Lets the sides have their turns until each has its amount or `interrupt` is set, calling
+/// `progress` after every piece of work (a few times a second). A sample that cannot be taken ends
+/// all of them. Whether the interrupt did.
+pub(super) fn take_turns(
+    sides: &mut [Turning],
+    pool: &Pool,
+    interrupt: &AtomicBool,
+    progress: &mut dyn FnMut(&[Account]),
+) -> bool {
+    let by_time = sides.iter().any(|side| side.amount.cpu_seconds.is_some());
+    let share = if by_time { Share::CpuTime } else { Share::Samples };
+    let stop = || interrupt.load(Ordering::Relaxed);
+    let mut accounts = vec![Account::default(); sides.len()];
+    while let Some(next) = turns::next(&accounts, share) {
+        if stop() {
+            return true;
+        }
+        let side = &mut sides[next];
+        side.turn(pool, &stop);
+        accounts[next] = side.account();
+        if side.failure.is_some() {
+            break;
+        }
+        progress(&accounts);
+    }
+    false
+}
+
+/// A side under way.
+pub(super) struct Turning {
+    engine: Engine,
+    amount: Amount,
+    history: NoiseHistory,
+    closed: bool,
+    failure: Option<Failure>,
+}
+
+impl Turning {
+    /// A side that has had nothing yet.
+    ///
+    /// # Errors
+    /// When its film does not fit the memory.
+    pub fn new(sampler: Arc<dyn PixelSampler>, size: UVec2, amount: Amount) -> Result<Self> {
+        let engine = Engine::new(sampler, Film::new(size)?, amount.limits(), None);
+        let history = NoiseHistory::default();
+        Ok(Self { engine, amount, history, closed: false, failure: None })
+    }
+
+    /// Does one piece of work, no longer than what is left of its CPU time.
+    fn turn(&mut self, pool: &Pool, stop: &(dyn Fn() -> bool + Sync)) {
+        if let Some(all) = self.amount.cpu_seconds {
+            let left = all - self.engine.cpu_seconds();
+            self.engine.set_limits(self.limits(left, pool.threads()));
+        }
+        match self.engine.step(pool, false, stop) {
+            Step::Worked | Step::Interrupted => {}
+            Step::Paused | Step::Done => self.closed = true,
+            Step::Failed(failure) => (self.closed, self.failure) = (true, Some(failure)),
+        }
+        let is_over = |all: f64| self.engine.cpu_seconds() >= all;
+        self.closed |= self.amount.cpu_seconds.is_some_and(is_over) && !self.is_uneven();
+        if self.history.wants(self.engine.cpu_seconds()) {
+            self.note_noise(pool);
+        }
+    }
+
+    /// When the next piece of work has to end, with so much of the CPU time left. Behind it only to
+    /// bring all pixels to the same number of samples.
+    fn limits(&self, left: f64, threads: usize) -> Limits {
+        let limits = self.amount.limits();
+        if left > 0.0 {
+            // The schedule counts seconds in which all threads work.
+            let seconds = Some(self.engine.seconds() + left / threads as f64);
+            return Limits { seconds, ..limits };
+        }
+        let (_, most) = self.engine.film().sample_range();
+        Limits { spp: most.max(FEWEST_FOR_VARIANCE), seconds: None }
+    }
+
+    /// Whether some pixels still lack samples that others have.
+    fn is_uneven(&self) -> bool {
+        let (fewest, most) = self.engine.film().sample_range();
+        self.amount.evenly && (fewest < most || fewest < FEWEST_FOR_VARIANCE)
+    }
+
+    /// Adds the present noise to the history, if every pixel has one.
+    fn note_noise(&mut self, pool: &Pool) {
+        let film = self.engine.film();
+        let (fewest, _) = film.sample_range();
+        if fewest < FEWEST_FOR_VARIANCE {
+            return;
+        }
+        if let Some(noise) = pool.install(|| FilmStats::of(film)).noise {
+            self.history.push(self.engine.cpu_seconds(), noise);
+        }
+    }
+
+    fn account(&self) -> Account {
+        Account {
+            cpu_seconds: self.engine.cpu_seconds(),
+            samples: samples_per_pixel(self.engine.film()),
+            closed: self.closed,
+        }
+    }
+
+    /// Ends it.
+    pub fn finish(mut self, pool: &Pool) -> RenderedSide {
+        self.note_noise(pool);
+        let (cpu_seconds, seconds) = (self.engine.cpu_seconds(), self.engine.seconds());
+        let (film, _) = self.engine.into_parts();
+        RenderedSide { film, cpu_seconds, seconds, history: self.history, failure: self.failure }
+    }
+}

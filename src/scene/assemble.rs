@@ -1,0 +1,61 @@
+//! Settings to the core's scene.
+
+mod placement;
+mod source;
+mod surfaces;
+mod volumes;
+
+use glam::Vec3A;
+
+use super::{VolumeCache, settings::Settings};
+use crate::{
+    error::{Error, Progress, Result},
+    light::Lights,
+    transport::{Scene, camera::Camera},
+    volume::world::World,
+};
+
+pub(crate) use placement::world_from_file;
+use surfaces::Built;
+
+/// Builds what the settings describe. Files and what was derived from them stay in `cache`, so
+/// that a scene of which only numbers have changed is built in a few milliseconds.
+///
+/// # Errors
+/// The settings are not valid, or a volume cannot be read; names the file, the key and the mend.
+pub fn assemble(settings: &Settings, cache: &VolumeCache, progress: Progress) -> Result<Scene> {
+    super::validate(settings, "")?;
+    let mut surfaces: Vec<_> = settings.surface.iter().map(surfaces::surface).collect();
+    let mut lights = Vec::new();
+    for light in &settings.light {
+        match surfaces::light(light) {
+            Built::Light(light) => lights.push(light),
+            Built::Surface(surface) => surfaces.push(surface),
+        }
+    }
+    let instances = volumes::instances(&settings.volume, cache, progress)?;
+    let used: Vec<_> = instances.iter().map(|instance| instance.volume().clone()).collect();
+    cache.retain(&used);
+    let world = World::new(instances);
+    Ok(Scene {
+        camera: camera(settings)?,
+        lights: Lights::new(settings.environment.radiance.rgb(), lights, &surfaces, &world),
+        world,
+        surfaces,
+        max_scatters: settings.path.max_scatters,
+        strategy: settings.strategy,
+    })
+}
+
+/// The camera of the settings.
+///
+/// # Errors
+/// It looks nowhere; names the key.
+pub fn camera(settings: &Settings) -> Result<Camera> {
+    let camera = &settings.camera;
+    let [position, target, up] = [camera.position, camera.target, camera.up].map(Vec3A::from_array);
+    Camera::look_at(position, target, up, camera.fov_x).ok_or_else(|| {
+        let reason = "position, target and up must differ in direction";
+        Error::invalid("", "camera", reason)
+    })
+}

@@ -1,0 +1,188 @@
+//! Where a volume's values come from: the grids of a file or the formula of a shape. Both answer
+//! the same questions, so that density, albedo and emission need not know which it is.
+
+use glam::{Affine3A, DAffine3, Vec3A};
+
+use crate::error::{Error, Progress, Result};
+use crate::math::{Aabb, Rgb};
+use crate::scene::cache::{GridValues, PlacedGrid, VolumeFile};
+use crate::scene::settings::{RampKind, VolumeSettings, VolumeShape};
+use crate::volume::Region;
+use crate::volume::field::{GridField, RgbField, ScalarField, grid_support};
+use crate::volume::procedural;
+use crate::volume::procedural::{Noise, Ramp};
+use crate::volume::vdb::GridClass;
+
+/// The grids of a file that a volume has asked for. Its own space is the index space of the first
+/// of them.
+pub(super) struct GridSource<'a> {
+    file: &'a VolumeFile,
+    progress: Progress<'a>,
+    file_from_local: Option<DAffine3>,
+    bounds: Aabb,
+    /// Edge of the smallest voxel, in the volume's own space.
+    voxel: f32,
+}
+
+/// The one field of a shape.
+pub(super) struct ShapeSource {
+    pub(super) region: Region,
+    pub(super) field: ScalarField,
+    /// The size of the cells that bound a field that varies.
+    pub(super) cell_size: Vec3A,
+}
+
+/// Either of them.
+pub(super) enum Source<'a> {
+    Grids(GridSource<'a>),
+    Shape(ShapeSource),
+}
+
+impl<'a> Source<'a> {
+    /// The values of a grid of single numbers; `field` is the key that names the grid.
+    pub(super) fn scalar(&mut self, grid: &str, field: &str) -> Result<ScalarField> {
+        match self {
+            Self::Shape(shape) => shape.scalar(grid, field),
+            Self::Grids(grids) => match grids.place(grid, field)? {
+                (GridValues::Float(values), from_local) => {
+                    Ok(ScalarField::Grid(GridField::new(values, from_local)))
+                }
+                (GridValues::Vector(_), _) => {
+                    let reason = format!("the grid \"{grid}\" holds vectors; name one of numbers");
+                    Err(Error::invalid(grids.file.name(), field, reason))
+                }
+            },
+        }
+    }
+
+    /// The values of a grid of colors or of single numbers, which stand for grays.
+    pub(super) fn rgb(&mut self, grid: &str, field: &str) -> Result<RgbField> {
+        let gray = |values| RgbField::Tinted(values, Rgb::ONE);
+        match self {
+            Self::Shape(shape) => shape.scalar(grid, field).map(gray),
+            Self::Grids(grids) => Ok(match grids.place(grid, field)? {
+                (GridValues::Float(values), from_local) => {
+                    gray(ScalarField::Grid(GridField::new(values, from_local)))
+                }
+                (GridValues::Vector(values), from_local) => {
+                    RgbField::Grid(GridField::new(values, from_local))
+                }
+            }),
+        }
+    }
+}
+
+impl<'a> GridSource<'a> {
+    pub(super) fn new(file: &'a VolumeFile, progress: Progress<'a>) -> Self {
+        let voxel = f32::INFINITY;
+        Self { file, progress, file_from_local: None, bounds: Aabb::EMPTY, voxel }
+    }
+
+    /// From the volume's own space to that of the file.
+    pub(super) fn file_from_local(&self) -> DAffine3 {
+        self.file_from_local.unwrap_or(DAffine3::IDENTITY)
+    }
+
+    /// The box around all grids asked for, in the volume's own space.
+    pub(super) fn bounds(&self) -> Aabb {
+        self.bounds
+    }
+
+    /// Edge of the smallest voxel of the grids asked for, in the volume's own space.
+    pub(super) fn voxel(&self) -> Option<f32> {
+        self.voxel.is_finite().then_some(self.voxel)
+    }
+
+    fn place(&mut self, name: &str, field: &str) -> Result<(GridValues, Affine3A)> {
+        let grid = self.file.grid(name, field, self.progress)?;
+        if grid.class == GridClass::LevelSet {
+            let reason = format!(
+                "the grid \"{name}\" is a level set, distances to a surface; convert it to a fog \
+                 volume before exporting it"
+            );
+            return Err(Error::unsupported(self.file.name(), field, reason));
+        }
+        let file_from_local = *self.file_from_local.get_or_insert(grid.world_from_index);
+        let local_from_grid = file_from_local.inverse() * grid.world_from_index;
+        self.voxel = self.voxel.min(shortest_edge(&local_from_grid));
+        let local_from_grid = local_from_grid.as_affine3a();
+        self.bounds = self.bounds.union(&support(&grid).transformed(&local_from_grid));
+        Ok((grid.values, local_from_grid.inverse()))
+    }
+}
+
+impl ShapeSource {
+    pub(super) fn new(shape: VolumeShape, settings: &VolumeSettings) -> Self {
+        let half_size = Vec3A::from_array(settings.half_size().axes());
+        let bounds = Aabb::centered(half_size);
+        let (region, field, cell_size) = match shape {
+            VolumeShape::Box => (Region::Box(bounds), ScalarField::Constant(1.0), bounds.size()),
+            VolumeShape::Sphere => {
+                let radius = settings.radius();
+                (Region::Sphere { radius }, ScalarField::Constant(1.0), Vec3A::splat(radius))
+            }
+            VolumeShape::Everywhere => (Region::Everywhere, ScalarField::Constant(1.0), Vec3A::ONE),
+            VolumeShape::Ramp => {
+                let axis = settings.axis().index();
+                let mut cell_size = bounds.size();
+                cell_size[axis] /= RAMP_CELLS;
+                (Region::Box(bounds), ScalarField::Ramp(ramp(settings, &bounds)), cell_size)
+            }
+            VolumeShape::Noise => {
+                let noise = noise(settings);
+                let cell_size = Vec3A::splat(NOISE_CELL / noise.frequency).min(bounds.size());
+                (Region::Box(bounds), ScalarField::Noise(noise), cell_size)
+            }
+        };
+        Self { region, field, cell_size }
+    }
+
+    fn scalar(&self, grid: &str, field: &str) -> Result<ScalarField> {
+        if grid == VolumeSettings::DENSITY {
+            return Ok(self.field.clone());
+        }
+        let reason = format!(
+            "there is no grid \"{grid}\"; a shape has only \"{}\", its own value",
+            VolumeSettings::DENSITY
+        );
+        Err(Error::invalid("", field, reason))
+    }
+}
+
+/// Cells along a ramp's axis.
+const RAMP_CELLS: f32 = 64.0;
+/// Edge of the cells of a noise, in lattice cells of its first octave.
+const NOISE_CELL: f32 = 0.25;
+
+fn ramp(settings: &VolumeSettings, bounds: &Aabb) -> Ramp {
+    let axis = settings.axis().index();
+    let kind = match settings.kind() {
+        RampKind::Linear => procedural::RampKind::Linear { a: settings.a(), b: settings.b() },
+        RampKind::Exponential => {
+            procedural::RampKind::Exponential { a: settings.a(), h: settings.h() }
+        }
+    };
+    Ramp { axis, low: bounds.min[axis], kind }
+}
+
+fn noise(settings: &VolumeSettings) -> Noise {
+    Noise {
+        frequency: settings.frequency(),
+        octaves: settings.octaves(),
+        contrast: settings.contrast(),
+        seed: settings.seed(),
+    }
+}
+
+fn support(grid: &PlacedGrid) -> Aabb {
+    match &grid.values {
+        GridValues::Float(values) => grid_support(values),
+        GridValues::Vector(values) => grid_support(values),
+    }
+}
+
+fn shortest_edge(affine: &DAffine3) -> f32 {
+    let matrix = affine.matrix3;
+    let edges = [matrix.x_axis.length(), matrix.y_axis.length(), matrix.z_axis.length()];
+    edges.into_iter().fold(f64::INFINITY, f64::min) as f32
+}

@@ -1,0 +1,172 @@
+//! Volumes of the settings as the core knows them.
+
+use std::sync::Arc;
+
+use glam::{DAffine3, Vec3A};
+
+use super::{
+    placement::world_from_file,
+    source::{GridSource, ShapeSource, Source},
+};
+use crate::error::{Error, Progress, Result};
+use crate::math::Rgb;
+use crate::scene::VolumeCache;
+use crate::scene::cache::{BuiltVolume, VolumeFile};
+use crate::scene::settings::{Albedo, EmissionMode, Extent, Normalize, VolumeSettings};
+use crate::volume::emission::{Blackbody, ColorRamp, Emission};
+use crate::volume::field::{RgbField, ScalarField};
+use crate::volume::world::Instance;
+use crate::volume::{Region, Substance, Volume};
+
+/// Edge of the cells that bound a file's grids, in voxels.
+const CELL_VOXELS: f32 = 4.0;
+
+/// Builds and places every volume; those that differ only in their placement are one.
+pub(super) fn instances(
+    volumes: &[VolumeSettings],
+    cache: &VolumeCache,
+    progress: Progress,
+) -> Result<Vec<Instance>> {
+    let count = volumes.len().max(1) as f32;
+    let build_one = |(index, settings): (usize, &VolumeSettings)| {
+        let part = |fraction: f32| progress((index as f32 + fraction) / count);
+        if !part(0.0) {
+            return Err(Error::Cancelled);
+        }
+        let key = format!("volume.{index}");
+        let built = built(settings, &key, cache, &part)?;
+        let world_from_local = world_from_file(settings) * built.file_from_local.as_affine3a();
+        if !(world_from_local.is_finite() && world_from_local.inverse().is_finite()) {
+            let field = if settings.matrix.is_some() { "matrix" } else { "scale" };
+            let reason = "places the volume too small, too large or too far away to be drawn";
+            return Err(Error::invalid("", format!("{key}.{field}"), reason));
+        }
+        Ok(Instance::new(built.volume, world_from_local))
+    };
+    volumes.iter().enumerate().map(build_one).collect()
+}
+
+fn built(
+    settings: &VolumeSettings,
+    key: &str,
+    cache: &VolumeCache,
+    progress: Progress,
+) -> Result<BuiltVolume> {
+    let file = match &settings.file {
+        Some(name) => Some(cache.file(name, progress)?),
+        None => None,
+    };
+    let unplaced = unplaced(settings);
+    if let Some(known) = cache.built(&unplaced, file.as_ref()) {
+        return Ok(known);
+    }
+    let (volume, file_from_local) = match (&file, settings.shape) {
+        (Some(file), _) => from_file(file, &unplaced, key, progress)?,
+        (None, Some(shape)) => {
+            (from_shape(ShapeSource::new(shape, &unplaced), &unplaced, key)?, DAffine3::IDENTITY)
+        }
+        (None, None) => {
+            return Err(Error::invalid("", key, "a volume needs a file or a shape"));
+        }
+    };
+    let volume = Arc::new(volume);
+    let built = BuiltVolume { settings: unplaced, file, volume, file_from_local };
+    cache.keep(built.clone());
+    Ok(built)
+}
+
+/// The settings without what does not change the volume itself.
+fn unplaced(settings: &VolumeSettings) -> VolumeSettings {
+    VolumeSettings {
+        name: String::new(),
+        translate: [0.0; 3],
+        rotate: [0.0; 3],
+        scale: Extent::default(),
+        matrix: None,
+        ..settings.clone()
+    }
+}
+
+fn from_file(
+    file: &VolumeFile,
+    settings: &VolumeSettings,
+    key: &str,
+    progress: Progress,
+) -> Result<(Volume, DAffine3)> {
+    let mut source = Source::Grids(GridSource::new(file, progress));
+    let substance = substance(&mut source, settings, key)?;
+    let Source::Grids(grids) = source else {
+        return Err(Error::invalid(file.name(), key, "the file has no grids"));
+    };
+    let cell_size = Vec3A::splat(CELL_VOXELS);
+    let volume = Volume::varying(grids.bounds(), substance, cell_size, grids.voxel());
+    Ok((volume, grids.file_from_local()))
+}
+
+fn from_shape(shape: ShapeSource, settings: &VolumeSettings, key: &str) -> Result<Volume> {
+    let (region, cell_size) = (shape.region, shape.cell_size);
+    let is_constant = matches!(shape.field, ScalarField::Constant(_));
+    let substance = substance(&mut Source::Shape(shape), settings, key)?;
+    Ok(match region {
+        Region::Box(bounds) if !is_constant => Volume::varying(bounds, substance, cell_size, None),
+        region => Volume::uniform(region, substance),
+    })
+}
+
+fn substance(source: &mut Source, settings: &VolumeSettings, key: &str) -> Result<Substance> {
+    // Without density the grid is read only where something else needs it: the glow, or the borders.
+    let needs_density = !settings.density.scale.is_black()
+        || settings.emission.times_density()
+        || settings.emission_grid().is_none();
+    let density = match needs_density {
+        true => source.scalar(settings.density_grid(), &format!("{key}.density.grid"))?,
+        false => ScalarField::Constant(0.0),
+    };
+    let albedo = match &settings.albedo {
+        Albedo::Gray(value) => RgbField::Constant(Rgb::splat(*value)),
+        Albedo::Rgb(rgb) => RgbField::Constant(Rgb::from_array(*rgb)),
+        Albedo::Grid(_) if settings.density.scale.is_black() => RgbField::Constant(Rgb::ZERO),
+        Albedo::Grid(named) => source.rgb(&named.grid, &format!("{key}.albedo.grid"))?,
+    };
+    let emission = emission(source, settings, &format!("{key}.emission.grid"))?;
+    let density_scale = settings.density.scale.rgb();
+    Ok(Substance { density, density_scale, albedo, g: settings.phase.g, emission })
+}
+
+fn emission(source: &mut Source, settings: &VolumeSettings, key: &str) -> Result<Emission> {
+    let emission = &settings.emission;
+    // Of the modes that read a grid; the others leave it alone.
+    let grid = settings.emission_grid().unwrap_or_default();
+    Ok(match emission.mode {
+        EmissionMode::None => Emission::None,
+        EmissionMode::Grid => Emission::Field {
+            field: source.rgb(grid, key)?,
+            scale: emission.scale() * emission.color().rgb(),
+        },
+        EmissionMode::Constant => {
+            Emission::Field { field: RgbField::Constant(emission.value().rgb()), scale: Rgb::ONE }
+        }
+        EmissionMode::Source => Emission::Source { le: emission.le().rgb() },
+        EmissionMode::Blackbody => Emission::Blackbody(Blackbody {
+            field: source.scalar(grid, key)?,
+            kelvin_offset: emission.kelvin_offset(),
+            kelvin_scale: emission.kelvin_scale(),
+            intensity: Rgb::splat(emission.intensity()),
+            times_density: emission.times_density(),
+            t4_reference: match emission.normalize() {
+                Normalize::Peak => None,
+                Normalize::T4 => Some(emission.reference_kelvin()),
+            },
+        }),
+        EmissionMode::Ramp => Emission::Ramp(ColorRamp {
+            field: source.scalar(grid, key)?,
+            stops: emission
+                .stops()
+                .iter()
+                .map(|&[value, r, g, b]| (value, Rgb::new(r, g, b)))
+                .collect(),
+            intensity: Rgb::splat(emission.intensity()),
+            times_density: emission.times_density(),
+        }),
+    })
+}

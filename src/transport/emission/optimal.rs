@@ -1,0 +1,70 @@
+//! Emission ratio tracking under the majorant that lowers the noise most for what it costs.
+//!
+//! With m(t) the radiance still to come from beyond t, the variance of the walk is
+//! ∫ (T²/μ̄) [(ε − μ_t m)² + μ_t² V] dt. Least for its steps is μ̄ = max(μ_t, k T √(…)), about
+//! max(maj μ_t, k T̂ max(ε, μ_t m̂)): k looks at what glows and at what hides the glow beyond, fewer
+//! where little gets through. The walk's own weight stands for T̂, and m̂ is a glance ahead. Since
+//! such a majorant depends on the walk's history, it is for the emission's own walk only.
+
+use super::{Errand, Glow, by_rate, least_rate};
+use crate::transport::tracking::EMISSION_FLOOR;
+use crate::{
+    math::{PathRng, Rgb},
+    volume::{medium::Segment, world::MediumRay},
+};
+
+/// About the mean emission of a cell relative to its upper bound.
+const FILL: f32 = 0.5;
+
+/// Gathers the emission along the medium, with k = `looks` along the brightest chord of a camera
+/// ray.
+pub(in crate::transport) fn gather(
+    medium: MediumRay,
+    looks: f32,
+    errand: Errand,
+    rng: &mut PathRng,
+) -> Glow {
+    // A glance ahead costs more than it brings where the direction is noisier anyway.
+    let ahead = match errand {
+        Errand::Camera if looks > EMISSION_FLOOR => glow_ahead(medium.clone()),
+        _ => 0.0,
+    };
+    let mut majorant = OptimalMajorant { looks: errand.share(looks), ahead };
+    by_rate(medium, |segment, weight| majorant.rate(segment, weight), rng)
+}
+
+struct OptimalMajorant {
+    looks: f32,
+    /// Emission of the rest of the ray, as a share of the brightest chord's.
+    ahead: f32,
+}
+
+impl OptimalMajorant {
+    #[inline]
+    fn rate(&mut self, segment: &Segment, weight: Rgb) -> f32 {
+        // No more than the brightest chord: an endless one is endlessly bright.
+        let to_come = self.ahead.min(1.0);
+        self.ahead = (self.ahead - glow_of(segment)).max(0.0);
+        let wanted = segment.emission_rate.max(segment.majorant * to_come);
+        let boosted = self.looks * weight.abs().max_element() * wanted;
+        least_rate(segment).max(boosted.min(f32::MAX))
+    }
+}
+
+/// The emission along the medium, extinction apart, as a share of the brightest chord's.
+fn glow_ahead(mut medium: MediumRay) -> f32 {
+    let mut sum = 0.0;
+    while let Some(segment) = medium.next_segment() {
+        sum += glow_of(&segment);
+    }
+    sum
+}
+
+#[inline]
+fn glow_of(segment: &Segment) -> f32 {
+    if segment.emission_rate > 0.0 {
+        FILL * segment.emission_rate * (segment.t1 - segment.t0)
+    } else {
+        0.0
+    }
+}

@@ -1,0 +1,162 @@
+//! Stratified emission sampling: where the emission is looked at and how the transmittance is
+//! estimated are two questions.
+//!
+//! The emission is read at jittered positions, one in each unit of Λ(t) = ∫ λ dt, and each adds
+//! ε(t) T̂(t) / λ(t). Their jitter is independent of that of the transmittance's, so that the mean
+//! of the product is the product of the means.
+
+use std::ops::ControlFlow;
+
+use super::{Errand, Glow, attenuated};
+use crate::transport::tracking::{EMISSION_FLOOR, MOST_COLLISIONS};
+use crate::transport::transmittance::{Comb, Transmittance};
+use crate::{
+    math::{PathRng, Rgb, Slot},
+    volume::{medium::Segment, world::MediumRay},
+};
+
+/// Places where a comb along a camera ray reads μ_t, for each unit of the majorants' optical
+/// distance: T̂ is the larger part of the noise that is left there.
+const CAMERA_READS: f32 = 6.0;
+/// The same along any other ray, whose direction was a noisier choice.
+const OTHER_READS: f32 = 1.0;
+
+/// How closely a walk looks, and the numbers its places are jittered by.
+struct Effort {
+    /// Looks at the emission along the brightest chord.
+    looks: f32,
+    /// Places where a comb reads μ_t, for each unit of the majorants' optical distance.
+    reads: f32,
+    jitter: Slot,
+    comb_jitters: [Slot; 2],
+}
+
+impl Effort {
+    fn new(boost: f32, errand: Errand) -> Self {
+        let looks = errand.share(boost);
+        let reads = match errand {
+            Errand::Camera => CAMERA_READS,
+            Errand::Scattered | Errand::Light => OTHER_READS,
+        };
+        let (jitter, comb_jitters) = match errand {
+            Errand::Camera | Errand::Scattered => {
+                (Slot::Emission, [Slot::TransmittanceA, Slot::TransmittanceB])
+            }
+            Errand::Light => {
+                (Slot::LightEmission, [Slot::LightTransmittanceA, Slot::LightTransmittanceB])
+            }
+        };
+        Self { looks: looks.max(EMISSION_FLOOR), reads, jitter, comb_jitters }
+    }
+}
+
+/// Gathers the emission along the medium, with `boost` looks at it on the brightest chord of a
+/// camera ray.
+pub(in crate::transport) fn gather(
+    mut medium: MediumRay,
+    boost: f32,
+    errand: Errand,
+    rng: &mut PathRng,
+) -> Glow {
+    let Some(mut segment) = medium.next_segment() else {
+        return Glow { emission: Rgb::ZERO, transmittance: Rgb::ONE, collisions: 0 };
+    };
+    let mut walk = Stratified::new(&Effort::new(boost, errand), rng);
+    loop {
+        let crossed = if segment.uniform {
+            walk.cross_uniform(&medium, &segment, rng)
+        } else {
+            walk.cross(&medium, &segment, rng)
+        };
+        if crossed.is_break() {
+            break;
+        }
+        let Some(next) = medium.next_segment() else { break };
+        segment = next;
+    }
+    // A walk that is cut may have read a few places more.
+    let collisions = walk.read().min(MOST_COLLISIONS);
+    Glow { emission: walk.emission, transmittance: walk.way.estimate(), collisions }
+}
+
+struct Stratified {
+    looks_per_chord: f32,
+    looks: Comb,
+    way: Transmittance,
+    emission: Rgb,
+    looked: u32,
+}
+
+impl Stratified {
+    fn new(effort: &Effort, rng: &mut PathRng) -> Self {
+        let looks = Comb::new(rng.at(effort.jitter));
+        let jitters = effort.comb_jitters.map(|slot| rng.at(slot));
+        Self {
+            looks_per_chord: effort.looks,
+            looks,
+            way: Transmittance::new(effort.reads, jitters, rng),
+            emission: Rgb::ZERO,
+            looked: 0,
+        }
+    }
+
+    /// Places read so far.
+    fn read(&self) -> u32 {
+        self.looked.saturating_add(self.way.reads)
+    }
+
+    /// λ = max(looks · maj ε, maj μ_t), where anything emits. Thinned out by T̂ it would take fewer
+    /// looks, but fire behind smoke would come at several times the noise.
+    fn rate(&self, segment: &Segment) -> f32 {
+        if segment.emission_rate <= 0.0 {
+            return 0.0;
+        }
+        (self.looks_per_chord * segment.emission_rate).max(segment.majorant)
+    }
+
+    fn cross(
+        &mut self,
+        medium: &MediumRay,
+        segment: &Segment,
+        rng: &mut PathRng,
+    ) -> ControlFlow<()> {
+        let mut t = segment.t0;
+        let rate = self.rate(segment);
+        if rate > 0.0 {
+            while let Some(place) = self.looks.next(rate, t, segment.t1) {
+                self.way.advance(medium, segment.majorant, t, place, rng)?;
+                t = place;
+                self.looked += 1;
+                let emission = medium.emission(place);
+                if emission != Rgb::ZERO {
+                    self.emission += emission * self.way.estimate() / rate;
+                }
+                if self.read() >= MOST_COLLISIONS {
+                    return ControlFlow::Break(());
+                }
+            }
+        }
+        self.way.advance(medium, segment.majorant, t, segment.t1, rng)?;
+        if self.read() >= MOST_COLLISIONS {
+            return ControlFlow::Break(());
+        }
+        ControlFlow::Continue(())
+    }
+
+    fn cross_uniform(
+        &mut self,
+        medium: &MediumRay,
+        segment: &Segment,
+        rng: &mut PathRng,
+    ) -> ControlFlow<()> {
+        let c = medium.coefficients(segment.t0);
+        if c.emission != Rgb::ZERO {
+            let glow = attenuated(c.emission, c.mu_t, segment.t1 - segment.t0);
+            self.emission += self.way.estimate() * glow;
+        }
+        self.way.cross_uniform(c.mu_t, segment, rng)
+    }
+}
+
+#[cfg(test)]
+mod tests;

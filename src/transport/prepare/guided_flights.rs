@@ -1,0 +1,195 @@
+//! How many guided flights pay for a shot, if any: a pilot tries, before the second sample.
+//!
+//! Probes cost time along every ray, and each guided flight is a path. Inside of smoke with a lamp
+//! in it they lower the noise a hundred times; a cloud under an even sky, or fire that hardly
+//! scatters, looks the same without them and takes half of the time. So each of a few shares is
+//! tried on some pixels, and the one with the least variance times cost is taken.
+//!
+//! Costs are counted, not timed, and the random numbers are none of the picture's, so that the same
+//! scene on the same film always gets the same share. Unbiased whichever that is.
+
+use glam::UVec2;
+
+use super::cost::Effort;
+use super::site::{Site, half_square};
+use crate::math::luminance;
+use crate::transport::path::Aids;
+use crate::transport::scene::Scene;
+
+/// The shares that are tried, relative to the flights that the probes propose.
+const TRIED: [f32; 4] = [0.0, 0.06, 0.25, 1.0];
+/// The share of samples that don't wait for the pilot.
+pub(in crate::transport) const FIRST: f32 = 0.25;
+/// What is spent on each share, in tracking steps of one of two paths at each pixel.
+const BUDGET: f64 = 131_072.0;
+/// Most pixels that a share is tried on.
+const MOST_SITES: u32 = 1 << 14;
+/// What it costs to ask the probes along a ray, in tracking steps. Measured as the rest is.
+const GUIDE_COST: f64 = 26.0;
+/// By how much guided flights have to be better than none, which the pilot knows to a fifth.
+const MARGIN: f64 = 0.8;
+
+/// The share that lowers variance times cost most for `scene` on a film of `size`; `aids` are those
+/// of a share.
+pub(in crate::transport) fn flights<'s>(
+    scene: &Scene,
+    size: UVec2,
+    aids: impl Fn(f32) -> Aids<'s> + Sync,
+) -> f32 {
+    if size.min_element() == 0 {
+        return FIRST;
+    }
+    let mut trials = [Trial::default(); TRIED.len()];
+    // Threads of their own: a worker that waits here for others might take up a sample meanwhile
+    // that waits for this.
+    std::thread::scope(|scope| {
+        for (trial, share) in trials.iter_mut().zip(TRIED) {
+            let aids = aids(share);
+            let work = move || *trial = Trial::new(scene, size, aids);
+            // Where the system refuses a thread, this one does the work below.
+            let _ = std::thread::Builder::new().name("pilot".to_owned()).spawn_scoped(scope, work);
+        }
+    });
+    for (trial, share) in trials.iter_mut().zip(TRIED).filter(|(trial, _)| trial.cost == 0.0) {
+        *trial = Trial::new(scene, size, aids(share));
+    }
+    best(&trials)
+}
+
+/// The share with the least variance times cost, if it is clearly better than none.
+fn best(trials: &[Trial; TRIED.len()]) -> f32 {
+    // Of a fire that hardly scatters it is most of the noise, and no share lowers it.
+    let emission = trials.iter().map(|trial| trial.emission).sum::<f64>() / trials.len() as f64;
+    let (mut least, mut best) = (f64::INFINITY, FIRST);
+    for (share, trial) in TRIED.into_iter().zip(trials) {
+        let margin = if share > 0.0 { 1.0 } else { MARGIN };
+        let product = (trial.scattered + emission) * trial.cost * margin;
+        if product < least {
+            (least, best) = (product, share);
+        }
+    }
+    best
+}
+
+/// What a share brought.
+#[derive(Clone, Copy, Debug, Default)]
+struct Trial {
+    /// Mean over the pixels of the variance of the light that is scattered or reflected to them.
+    scattered: f64,
+    /// The same of the emission that is seen directly.
+    emission: f64,
+    /// Mean cost of a sample, in steps.
+    cost: f64,
+}
+
+impl Trial {
+    fn new(scene: &Scene, size: UVec2, aids: Aids<'_>) -> Self {
+        let (mut trial, mut sites) = (Self::default(), 0);
+        while trial.cost < BUDGET && sites < MOST_SITES {
+            let site = Site::new(scene, size, sites);
+            let guides = if aids.flights > 0.0 && site.meets_medium() { GUIDE_COST } else { 0.0 };
+            let [a, b] = [0, 1].map(|number| {
+                let mut effort = Effort::default();
+                let sample = site.path(aids, 0, number, &mut effort);
+                trial.cost += 0.5 * (effort.of(&sample) + guides);
+                [sample.direct + sample.indirect, sample.emission]
+                    .map(|light| f64::from(luminance(light)))
+            });
+            trial.scattered += half_square(a[0] - b[0]);
+            trial.emission += half_square(a[1] - b[1]);
+            sites += 1;
+        }
+        let sites = f64::from(sites);
+        let Self { scattered, emission, cost } = trial;
+        Self { scattered: scattered / sites, emission: emission / sites, cost: cost / sites }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::transport::Frame;
+
+    const SIZE: UVec2 = UVec2::new(48, 32);
+
+    /// A cloud under an even sky.
+    const CLOUD: &str = r#"
+        [camera]
+        position = [0, -4, 0]
+        target = [0, 0, 0]
+        [environment]
+        radiance = 1.0
+        [[volume]]
+        shape = "noise"
+        half_size = 1.0
+        frequency = 2.0
+        density = { scale = 6.0 }
+        albedo = 0.999
+        phase = { g = 0.8 }
+    "#;
+
+    /// A small lamp inside of thin smoke.
+    const LAMP: &str = r#"
+        [camera]
+        position = [0, -4, 0]
+        target = [0, 0, 0]
+        [[volume]]
+        shape = "box"
+        half_size = 1.0
+        density = { scale = 0.3 }
+        albedo = 0.9
+        [[light]]
+        type = "sphere"
+        center = [0.1, 0.1, 0.1]
+        radius = 0.01
+        radiance = 100.0
+    "#;
+
+    fn frame(text: &str) -> Frame {
+        Frame::new(Arc::new(Scene::of_text(text)), SIZE, 0)
+    }
+
+    #[test]
+    fn probes_are_asked_where_that_pays() {
+        assert_eq!(frame(CLOUD).guided_flights(), 0.0);
+        assert!(frame(LAMP).guided_flights() >= 0.25);
+        for (key, flights) in [("share_learning = false", 1.0), ("distance = 'probes'", 1.0)] {
+            let text = format!("{CLOUD}\n[strategy.advanced]\n{key}");
+            assert_eq!(frame(&text).guided_flights(), flights, "{key}");
+        }
+    }
+
+    /// Each share is found best where it is.
+    #[test]
+    fn the_least_variance_times_cost_is_best() {
+        let trial = |scattered, cost| Trial { scattered, emission: 1.0, cost };
+        for (variances, costs, share) in [
+            ([1.0, 1.0, 1.0, 1.0], [1.0, 2.0, 3.0, 4.0], 0.0),
+            ([9.0, 1.0, 0.9, 0.8], [1.0, 2.0, 3.0, 4.0], 0.06),
+            ([9.0, 9.0, 1.0, 0.9], [1.0, 2.0, 3.0, 4.0], 0.25),
+            ([99.0, 50.0, 20.0, 1.0], [1.0, 2.0, 3.0, 4.0], 1.0),
+            // What no share lowers makes the cheapest best.
+            ([0.3, 0.2, 0.1, 0.0], [1.0, 2.0, 3.0, 4.0], 0.0),
+            // Hardly better than none is not clearly better.
+            ([1.0, 0.9, 2.0, 2.0], [1.0, 1.0, 1.0, 1.0], 0.0),
+            ([1.0, 0.2, 2.0, 2.0], [1.0, 1.0, 1.0, 1.0], 0.06),
+            ([f64::NAN; 4], [1.0; 4], FIRST),
+        ] {
+            let trials = std::array::from_fn(|i| trial(variances[i], costs[i]));
+            assert_eq!(best(&trials), share, "{variances:?}");
+        }
+    }
+
+    /// Whoever asks first, however many others wait: from the second sample on all is as found.
+    #[test]
+    fn whoever_asks_gets_the_same() {
+        use rayon::prelude::*;
+        let alone = frame(LAMP);
+        let expected = alone.guided_flights();
+        let shared = frame(LAMP);
+        let found: Vec<f32> = (0..64).into_par_iter().map(|_| shared.guided_flights()).collect();
+        assert!(found.iter().all(|flights| *flights == expected), "{expected}, {found:?}");
+    }
+}

@@ -1,0 +1,101 @@
+//! What probes learn from paths: the light that reaches a place after it has turned before, which
+//! no look at a light tells.
+//!
+//! Rays go out from points in each probe in directions spread over the sphere. What is scattered
+//! and reflected into them is the radiance that arrives indirectly, hidden lights and walls
+//! included. Its fluence and mean direction are kept. The pre-pass is fixed by the scene alone, so
+//! that every render of it has the same probes; the paths of the picture change nothing.
+
+use std::f32::consts::{PI, TAU};
+
+use glam::{UVec2, Vec3A};
+use rayon::prelude::*;
+
+use super::cost::Effort;
+use crate::transport::emission::Gatherer;
+use crate::transport::path;
+use crate::transport::path::Aids;
+use crate::transport::probes::{Brightness, Indirect, Probes, SEED};
+use crate::transport::scene::Scene;
+use crate::transport::strategy::{Advanced, Preset, Strategy};
+use crate::{
+    math::{Aabb, PathRng, Ray, luminance},
+    sampling::warp::spherical,
+};
+
+/// Most paths from each probe.
+const PATHS: u32 = 16;
+/// Cost of a probe's paths, in tracking steps, after which no other sets out.
+const EFFORT: f64 = 1536.0;
+/// Turns after which they end: later ones bring little that would move a probe.
+const MOST_TURNS: u32 = 64;
+/// Steps of two numbers that fill the unit square evenly, however many there are (Roberts 2018).
+const EVEN_STEPS: [f32; 2] = [0.754_877_7, 0.569_840_3];
+
+impl Probes {
+    /// The probes for `scene`, if its strategy asks for any and anything scatters. The same scene
+    /// always gets the same ones.
+    pub fn new(scene: &Scene) -> Option<Self> {
+        Self::unless(scene, &|| false)
+    }
+
+    /// The same, but given up, with `None`, once `stop` says so.
+    pub fn unless(scene: &Scene, stop: &(dyn Fn() -> bool + Sync)) -> Option<Self> {
+        let mut probes = Self::placed(scene, stop)?;
+        let (guides, advanced) = (scene.strategy.guides(), &scene.strategy.advanced);
+        if advanced.guide_caustics && guides {
+            probes.find_caustics(scene, stop)?;
+        }
+        if advanced.probe_learning && guides {
+            let learned = learned(&probes, scene, stop)?;
+            probes.learn(&learned);
+        }
+        Some(probes)
+    }
+}
+
+/// What each leaf learns; `None` when stopped.
+fn learned(
+    probes: &Probes,
+    scene: &Scene,
+    stop: &(dyn Fn() -> bool + Sync),
+) -> Option<Vec<(u32, Indirect)>> {
+    let turns = match scene.max_scatters {
+        0 => MOST_TURNS,
+        most => most.min(MOST_TURNS),
+    };
+    let advanced = Advanced {
+        light_selection: scene.strategy.advanced.light_selection,
+        ..Advanced::default()
+    };
+    let strategy = Strategy { advanced, ..Preset::Full.strategy() };
+    let scene = Scene { max_scatters: turns, strategy, ..scene.clone() };
+    let gatherer = Gatherer::at_a_glance();
+    let brightness = Brightness::default();
+    let aids = Aids { gatherer: &gatherer, probes: Some(probes), brightness, flights: 1.0 };
+    let learn = |(node, bounds): &(u32, Aabb)| {
+        (!stop()).then(|| (*node, around(&scene, aids, *node, bounds)))
+    };
+    probes.leaves().par_iter().map(learn).collect()
+}
+
+/// The light that arrives indirectly in a leaf.
+fn around(scene: &Scene, aids: Aids<'_>, node: u32, bounds: &Aabb) -> Indirect {
+    let mut indirect = Indirect::default();
+    let mut rng = PathRng::new(SEED, UVec2::new(node, 2), PATHS);
+    let begin = [rng.uniform(), rng.uniform()];
+    let (mut paths, mut spent) = (0, 0.0);
+    while paths < PATHS && spent < EFFORT {
+        let mut rng = PathRng::new(SEED, UVec2::new(node, 2), paths);
+        let u = Vec3A::new(rng.uniform(), rng.uniform(), rng.uniform());
+        let even = |k: usize| (begin[k] + paths as f32 * EVEN_STEPS[k]).fract();
+        let direction = spherical(1.0 - 2.0 * even(0), TAU * even(1));
+        let ray = Ray::new(bounds.min + u * bounds.size(), direction);
+        let mut effort = Effort::default();
+        let sample = path::trace(scene, aids, ray, &mut rng, &mut effort);
+        indirect.add(direction, 4.0 * PI * luminance(sample.direct + sample.indirect));
+        paths += 1;
+        spent += effort.of(&sample);
+    }
+    indirect.scaled(1.0 / paths.max(1) as f32)
+}

@@ -1,0 +1,69 @@
+//! Places on the film that are looked at before the first sample, to find out what pays.
+
+use glam::{UVec2, Vec2};
+
+use crate::transport::observer::Observer;
+use crate::transport::path::Aids;
+use crate::transport::scene::Scene;
+use crate::transport::{PathSample, path};
+use crate::{
+    math::{PathRng, Ray},
+    surface,
+};
+
+/// Fixed, and like the samples it is used with none that a picture is likely to have.
+const SEED: u64 = 0x6f70_7469_6d61_6c21;
+
+/// A pixel and two rays through it.
+pub(in crate::transport) struct Site<'s> {
+    pub(in crate::transport) scene: &'s Scene,
+    pixel: UVec2,
+    pub(in crate::transport) rays: [Ray; 2],
+}
+
+impl<'s> Site<'s> {
+    /// Number `index` of a sequence that covers the film evenly (Roberts 2018, R₂).
+    pub(in crate::transport) fn new(scene: &'s Scene, size: UVec2, index: u32) -> Self {
+        const STEP: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_2];
+        let place = STEP.map(|step| (0.5 + step * f64::from(index)).fract() as f32);
+        let pixel = (Vec2::from_array(place) * size.as_vec2()).as_uvec2().min(size - UVec2::ONE);
+        let mut rng = PathRng::new(SEED, pixel, u32::MAX);
+        let rays = [(); 2].map(|()| {
+            let offset = Vec2::new(rng.uniform(), rng.uniform());
+            scene.camera.ray(size, pixel, offset)
+        });
+        Self { scene, pixel, rays }
+    }
+
+    /// Where surfaces end the first ray.
+    pub(in crate::transport) fn end(&self) -> f32 {
+        surface::intersect(&self.scene.surfaces, &self.rays[0])
+            .map_or(f32::INFINITY, |end| end.hit.t)
+    }
+
+    /// Whether the first ray meets any of the medium.
+    pub(in crate::transport) fn meets_medium(&self) -> bool {
+        self.scene.world.along(self.rays[0], self.end()).extent().is_some()
+    }
+
+    /// Random numbers for what is tried here; each `number` gives others.
+    pub(in crate::transport) fn rng(&self, number: u32) -> PathRng {
+        PathRng::new(SEED, self.pixel, u32::MAX - 1 - number)
+    }
+
+    /// A path along one of the rays.
+    pub(in crate::transport) fn path(
+        &self,
+        aids: Aids<'_>,
+        ray: usize,
+        number: u32,
+        observer: &mut impl Observer,
+    ) -> PathSample {
+        path::trace(self.scene, aids, self.rays[ray], &mut self.rng(number), observer)
+    }
+}
+
+/// Of two independent finds, what is on average their variance.
+pub(in crate::transport) fn half_square(difference: f64) -> f64 {
+    0.5 * difference * difference
+}
