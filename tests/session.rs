@@ -11,7 +11,7 @@ use flambeau::render::estimate::{PixelEstimate, gray};
 use flambeau::render::publish::Extras;
 use flambeau::render::schedule::Limits;
 use flambeau::render::{
-    Film, FilmStats, Headless, Job, Layer, Picture, Request, Resume, Session, render_headless,
+    Film, FilmStats, Headless, Layer, Picture, RenderJob, Request, Resume, Session, render_headless,
 };
 use flambeau::scene;
 use flambeau::transport::{Frame, PathSample, PixelSampler};
@@ -71,7 +71,7 @@ impl PixelSampler for Counting {
 }
 
 fn render(sampler: &Arc<Counting>, spp: u32, threads: usize, resume: Option<Film>) -> Headless {
-    let job = Job {
+    let job = RenderJob {
         sampler: Arc::clone(sampler) as _,
         size: SIZE,
         limits: Limits { spp, seconds: None },
@@ -132,7 +132,7 @@ fn more_samples_than_wanted_are_left_alone() {
 
 #[test]
 fn a_film_of_another_size_is_refused() {
-    let job = Job {
+    let job = RenderJob {
         sampler: Counting::new(u64::MAX),
         size: SIZE,
         limits: Limits { spp: 1, seconds: None },
@@ -147,7 +147,7 @@ fn a_film_of_another_size_is_refused() {
 #[test]
 fn the_time_limit_ends_a_render_without_samples_limit() {
     let sampler = Counting::new(u64::MAX);
-    let job = Job {
+    let job = RenderJob {
         sampler: Arc::clone(&sampler) as _,
         size: SIZE,
         limits: Limits { spp: 0, seconds: Some(0.2) },
@@ -179,7 +179,7 @@ fn the_reported_variance_is_that_between_seeds() {
     let scene = Arc::new(scene);
     let (mut reported, mut means) = (0.0, Vec::new());
     for seed in 0..seeds {
-        let job = Job {
+        let job = RenderJob {
             sampler: Arc::new(Frame::new(Arc::clone(&scene), size, seed)),
             size,
             limits: Limits { spp, seconds: None },

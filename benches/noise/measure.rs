@@ -5,7 +5,7 @@ use std::sync::{Arc, atomic::AtomicBool};
 use flambeau::{
     cli::cpu_time::process_seconds,
     render::{
-        Job,
+        RenderJob,
         estimate::{PixelEstimate, gray},
         render_headless,
         schedule::Limits,
@@ -167,7 +167,7 @@ fn bare(frame: Frame, spp: u32) -> Picture {
 
 /// As the command line renders.
 fn with_film(frame: Frame, spp: u32) -> Picture {
-    let job = Job {
+    let job = RenderJob {
         sampler: Arc::new(frame),
         size: UVec2::splat(SIDE),
         limits: Limits { spp, seconds: None },

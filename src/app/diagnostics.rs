@@ -13,13 +13,13 @@ use glam::UVec2;
 
 pub use super::picture::ramp_color::{STOPS, Scale, color as ramp_color, stops};
 
-use super::jobs::live_render::Engine;
+use super::jobs::live_render::LiveRender;
 use super::picture::display::Look;
 use super::picture::viewport::View;
 use crate::image::tone::Tone;
 use crate::render::{Layer, Picture};
 use crate::scene::{self, Settings};
-use cells::{Gathering, Source};
+use cells::{CellSource, Gathering};
 pub use legend::{Legend, show as show_legends};
 use ray::Inspector;
 
@@ -56,12 +56,12 @@ pub struct Diagnostics {
 
 impl Diagnostics {
     /// Brings session and cells in line with what is wanted. Called once a frame.
-    pub fn update(&mut self, ctx: &Context, engine: &mut Engine) {
+    pub fn update(&mut self, ctx: &Context, engine: &mut LiveRender) {
         engine.set_layer(self.wanted.layer);
         let scene = engine.built().map(|built| built.scene.clone());
         let cells = self.wanted.cells.zip(scene.clone()).map(|(value, scene)| {
             let probes = if value == CellValue::Probes { engine.probes() } else { None };
-            Source { value, scene, probes }
+            CellSource { value, scene, probes }
         });
         let wake = ctx.clone();
         self.gathering.update(cells, move || wake.request_repaint());

@@ -2,16 +2,16 @@
 //!
 //! - [`window`](self): [`App`] owns the state and runs a frame; [`run`] opens a window for it.
 //! - `state`, `history`: what is edited, and undo; `commands`: everything that can be asked for.
-//! - `engine`, `loader`, `prober`: from edits to pictures, without ever blocking the window.
+//! - `engine`, `loader`, `probe_placer`: from edits to pictures, without ever blocking the window.
 //! - `viewport`, `navigation`, `zoom`, `display`, `readout`: the picture and the hand on it.
 //! - `gizmo`: handles over the picture that move a light; `stops`: those of a color ramp.
-//! - `duel`: two strategies on one scene, or a snapshot and the live picture, side by side.
-//! - `rectangle`, `yardstick`: a part of the picture and a reference that figures are told of;
-//!   `sheet`: all that in a file.
+//! - `second_side`: two strategies on one scene, or a snapshot and the live picture, side by side.
+//! - `region`, `reference`: a part of the picture and a reference that figures are told of;
+//!   `export`: all that in a file.
 //! - `sweep`: every strategy tried on the shot, and ranked.
 //! - `diagnostics`: cells over the picture and maps in its place, to understand a render.
 //! - `panels`, `widgets`, `notices`, `theme`: what is around it.
-//! - `files`, `saver`, `reopen`: choosing, writing and going on from files; `data`, `remembered`: what
+//! - `files`, `saver`, `reopen`: choosing, writing and going on from files; `data`, `preferences`: what
 //!   outlasts a run.
 //! - `snapshots`: pictures kept in a strip, on the disk between runs.
 //! - `frame_stats`: what the window costs (`FLAMBEAU_FRAME_STATS=FILE`).
@@ -30,11 +30,11 @@ mod ui;
 
 pub use command::Command;
 pub use compare::reference::Measure;
-pub use compare::second_side::Layout;
+pub use compare::second_side::CompareLayout;
 pub use diagnostics::{Scale, ramp_color};
 pub use document::{Compared, Document, Editor, Side};
 pub use jobs::dialogs::Dialogs;
-pub use jobs::live_render::Engine;
+pub use jobs::live_render::LiveRender;
 pub use shell::{App, Options};
 pub use sweep::{Results, Sweep};
 pub use ui::notices::{Level, Notice, Notices};

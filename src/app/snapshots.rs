@@ -18,13 +18,13 @@ use egui::Context;
 
 pub use disk::Keep;
 pub use record::{now, strategy};
-pub use strip::{Item, SmallPicture, Strip};
+pub use strip::{SmallPicture, Strip, StripItem};
 pub use thumbnail::LARGEST as LARGEST_THUMBNAIL;
 
 use super::ui::notices::Notices;
 use crate::error::Result;
 use crate::render::Picture;
-use disk::{Clerk, Job, Report};
+use disk::{DiskJob, DiskReport, DiskWorkers};
 use store::Store;
 
 /// Bytes that snapshots take on the disk at most.
@@ -37,7 +37,7 @@ pub struct Snapshots {
     /// Whether the picture is to be kept as soon as it is that of the present scene.
     pub wants_keep: bool,
     store: Option<Store>,
-    clerk: Clerk,
+    clerk: DiskWorkers,
     /// How many are being written.
     keeping: usize,
     /// Whether a picture is being read.
@@ -52,8 +52,8 @@ impl Snapshots {
     pub fn new(ctx: &Context, data: Option<PathBuf>) -> Result<Self> {
         let store = data.map(|data| Store::new(&data));
         let wake = ctx.clone();
-        let clerk = Clerk::new(store.clone(), LIMIT, move || wake.request_repaint())?;
-        clerk.ask(Job::List);
+        let clerk = DiskWorkers::new(store.clone(), LIMIT, move || wake.request_repaint())?;
+        clerk.ask(DiskJob::List);
         let strip = Strip::default();
         Ok(Self { strip, wants_keep: false, store, clerk, keeping: 0, reading: false })
     }
@@ -75,16 +75,16 @@ impl Snapshots {
         }
     }
 
-    fn take_in(&mut self, report: Report, notices: &mut Notices) {
+    fn take_in(&mut self, report: DiskReport, notices: &mut Notices) {
         match report {
-            Report::Listed(entries, problems) => {
+            DiskReport::Listed(entries, problems) => {
                 self.strip.fill(entries);
                 if !problems.is_empty() {
                     let text = problems.join("\n");
                     notices.failed(format!("Not all snapshots can be shown:\n{text}"));
                 }
             }
-            Report::Kept { kept, picture, gone } => {
+            DiskReport::Kept { kept, picture, gone } => {
                 self.keeping -= 1;
                 self.strip.push(kept, picture);
                 self.strip.remove(&gone);
@@ -98,11 +98,11 @@ impl Snapshots {
                     ));
                 }
             }
-            Report::NotKept(reason) => {
+            DiskReport::NotKept(reason) => {
                 self.keeping -= 1;
                 notices.failed(format!("The picture could not be kept. {reason}"));
             }
-            Report::Read(id, picture) => {
+            DiskReport::Read(id, picture) => {
                 self.reading = false;
                 let failure = picture.as_ref().err().cloned();
                 let wanted = self.strip.take_in(&id, picture.ok());
@@ -111,18 +111,18 @@ impl Snapshots {
                     notices.failed(reason);
                 }
             }
-            Report::Lost(id, reason) => {
+            DiskReport::Lost(id, reason) => {
                 self.strip.lose(&id);
                 notices.failed(format!("The snapshot could not be brought back. {reason}"));
             }
-            Report::Failed(reason) => notices.failed(reason),
+            DiskReport::Failed(reason) => notices.failed(reason),
         }
     }
 
     /// Keeps a picture.
     pub fn keep(&mut self, keep: Keep) {
         self.keeping += 1;
-        self.clerk.ask(Job::Keep(Box::new(keep)));
+        self.clerk.ask(DiskJob::Keep(Box::new(keep)));
     }
 
     /// How many are being written.
@@ -150,7 +150,7 @@ impl Snapshots {
     }
 
     /// The file of a snapshot.
-    pub fn file(&self, item: &Item) -> Option<PathBuf> {
+    pub fn file(&self, item: &StripItem) -> Option<PathBuf> {
         Some(self.store.as_ref()?.picture(&item.entry.id))
     }
 

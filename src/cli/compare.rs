@@ -22,16 +22,16 @@ use super::scene_source::SceneArguments;
 use super::stats::Spent;
 use super::{Exit, Refusal, print, warn};
 use crate::error::{Error, Result};
-use crate::image::exr::Header;
+use crate::image::exr::SnapshotHeader;
 use crate::render::Failure;
 use crate::render::compare::Comparison;
 use crate::render::side_by_side::{PairJob, RenderedPair, render_side_by_side};
-use crate::render::turns::Account;
+use crate::render::turns::Usage;
 use crate::scene::{self, Settings, VolumeCache};
 use crate::transport::{Frame, PixelSampler, Scene};
 use errors::Errors;
-use sides::Choice;
-use table::{SideRow, Table};
+use sides::StrategyChoice;
+use table::{CompareTable, SideRow};
 pub(super) use table::{SpeedUpRow, put};
 
 /// CPU seconds of each side where the command line says nothing.
@@ -44,10 +44,10 @@ pub struct Arguments {
     /// Strategy of side A: a preset, keys of the strategy such as nee=false, or both, separated by
     /// commas. It is laid over the scene and over --preset and --set, which both sides share.
     #[arg(long, value_name = "PRESET|KEY=VALUE,..", default_value = "baseline")]
-    a: Choice,
+    a: StrategyChoice,
     /// Strategy of side B.
     #[arg(long, value_name = "PRESET|KEY=VALUE,..", default_value = "full")]
-    b: Choice,
+    b: StrategyChoice,
     /// Seconds of CPU time that the sampling threads spend on each side; 10 if neither this nor
     /// --spp is given.
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
@@ -122,8 +122,8 @@ fn write(
     folder: &Path,
     arguments: &Arguments,
     pair: &RenderedPair,
-    headers: &[Header; 2],
-    table: &Table,
+    headers: &[SnapshotHeader; 2],
+    table: &CompareTable,
 ) -> Result<()> {
     let names = [format!("A {}", arguments.a.text()), format!("B {}", arguments.b.text())];
     let words = (&names, table.sentence.as_str());
@@ -133,7 +133,7 @@ fn write(
 
 /// The settings of A and of B: those they share, each with its own strategy.
 fn settings_of_sides(arguments: &Arguments, shared: &Settings) -> Result<[Settings; 2], Refusal> {
-    let settings = |choice: &Choice, option: &str| {
+    let settings = |choice: &StrategyChoice, option: &str| {
         let mut settings = choice.over(shared, option).map_err(Refusal::usage)?;
         settings.film.spp = arguments.spp.unwrap_or(0);
         if settings.strategy.is_biased() {
@@ -194,7 +194,7 @@ fn show_progress(job: PairJob, interrupt: &AtomicBool) -> Result<RenderedPair> {
     const STEPS: u64 = 1000;
     let (spp, cpu_seconds) = (job.spp, job.cpu_seconds);
     let bar = progress_bar(STEPS);
-    let part = |account: &Account| {
+    let part = |account: &Usage| {
         let by_samples = if spp > 0 { account.samples / f64::from(spp) } else { 0.0 };
         let by_time = cpu_seconds.map_or(0.0, |end| account.cpu_seconds / end);
         by_samples.max(by_time).min(1.0)
@@ -219,7 +219,7 @@ fn table(
     pair: &RenderedPair,
     comparison: &Comparison,
     (spent, errors): ([Spent; 2], Option<[Errors; 2]>),
-) -> Table {
+) -> CompareTable {
     let choices = [&arguments.a, &arguments.b];
     let row = |side: usize| {
         SideRow::new(
@@ -231,7 +231,7 @@ fn table(
         )
     };
     let film = &sides[0].settings.film;
-    Table {
+    CompareTable {
         scene: arguments.scene.name().to_owned(),
         width: film.size[0],
         height: film.size[1],

@@ -33,9 +33,9 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
 
 /// Lines of `name value` with the values in one column.
 #[derive(Default)]
-struct Report(String);
+struct InfoText(String);
 
-impl Report {
+impl InfoText {
     fn title(&mut self, title: &str) {
         // Writing to a String cannot fail.
         let _ = writeln!(self.0, "{title}");
@@ -51,7 +51,7 @@ fn volume(file: &str) -> Result<String> {
     let description = scene::describe(file, &cache, NO_PROGRESS)?;
     let opened = cache.file(file, NO_PROGRESS)?;
     let directory = opened.directory();
-    let mut report = Report::default();
+    let mut report = InfoText::default();
     let (version, count) = (directory.version, description.grids.len());
     report.title(&format!("OpenVDB file, format {version}, {count} grids"));
     for (name, value) in &description.metadata {
@@ -63,7 +63,7 @@ fn volume(file: &str) -> Result<String> {
     Ok(report.0)
 }
 
-fn describe_grid(report: &mut Report, grid: &GridDescription, info: &GridInfo) {
+fn describe_grid(report: &mut InfoText, grid: &GridDescription, info: &GridInfo) {
     report.title(&format!("\"{}\"", grid.name));
     report.row("type", &grid.type_name);
     report.row("class", &grid.class);
@@ -89,7 +89,7 @@ fn describe_grid(report: &mut Report, grid: &GridDescription, info: &GridInfo) {
 }
 
 fn snapshot(info: &Info) -> String {
-    let mut report = Report::default();
+    let mut report = InfoText::default();
     report.title(&format!("EXR, {} x {} pixels", info.size.x, info.size.y));
     report.row("layers", layers(&info.channels));
     if info.parts != 1 {
@@ -146,7 +146,7 @@ fn layers(channels: &[String]) -> String {
 }
 
 fn summary(settings: &Settings) -> String {
-    let mut report = Report::default();
+    let mut report = InfoText::default();
     let [width, height] = settings.film.size;
     report.title("Scene");
     let spp = match settings.film.spp {

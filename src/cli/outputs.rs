@@ -69,7 +69,7 @@ pub fn check_folder(path: &Path) -> Result<()> {
 
 /// Writes every output. One that fails does not keep the others from being written; the first
 /// error is returned.
-pub fn write_all(outputs: &[Output], film: &Film, header: &exr::Header) -> Result<()> {
+pub fn write_all(outputs: &[Output], film: &Film, header: &exr::SnapshotHeader) -> Result<()> {
     let mut pixels = Vec::new();
     if outputs.iter().any(|output| output.format != Format::Exr) {
         resolve(film, &mut pixels);

@@ -17,10 +17,10 @@ use super::stats::{Spent, Stats};
 use super::{Exit, Refusal, warn};
 use crate::error::{Error, Result};
 use crate::files::Fingerprint;
-use crate::image::exr::{Header, Snapshot, read_snapshot};
+use crate::image::exr::{Snapshot, SnapshotHeader, read_snapshot};
 use crate::render::estimate::samples_per_pixel;
 use crate::render::schedule::Limits;
-use crate::render::{Failure, Film, FilmStats, Headless, Job, render_headless};
+use crate::render::{Failure, Film, FilmStats, Headless, RenderJob, render_headless};
 use crate::scene::{self, Settings, VolumeCache};
 use crate::transport::Frame;
 
@@ -89,7 +89,7 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
     let size = UVec2::from_array(settings.film.size);
     let sampler = Arc::new(Frame::new(Arc::new(scene), size, settings.film.seed));
     let threads = arguments.threads.map(usize::from);
-    let job = Job { sampler, size, limits, resume: film, threads };
+    let job = RenderJob { sampler, size, limits, resume: film, threads };
     let render = show_progress(job, &interrupt)?;
     let spent = before.plus(Spent {
         wall: start.elapsed().as_secs_f64(),
@@ -131,15 +131,15 @@ fn writes_snapshot(arguments: &Arguments) -> bool {
 fn resume(path: &Path, settings: &Settings, files: &[Fingerprint]) -> Result<Snapshot> {
     let snapshot = read_snapshot(path)?;
     let name = path.display().to_string();
-    let kinship = scene::kinship(&snapshot.header, &name, settings, files)?;
-    if let Some(scene::Obstacle { what, mend }) = kinship.obstacle {
-        return Err(Error::invalid(name, "", format!("{what}. {mend}")));
+    let compatibility = scene::compatibility(&snapshot.header, &name, settings, files)?;
+    if let Some(scene::Blocker { what, fix }) = compatibility.blocker {
+        return Err(Error::invalid(name, "", format!("{what}. {fix}")));
     }
-    kinship.doubts.iter().for_each(|doubt| warn(doubt));
+    compatibility.warnings.iter().for_each(|warning| warn(warning));
     Ok(snapshot)
 }
 
-fn spent_before(header: &Header) -> Spent {
+fn spent_before(header: &SnapshotHeader) -> Spent {
     Spent {
         wall: header.wall_seconds,
         cpu_setup: header.cpu_seconds_setup,
@@ -148,7 +148,7 @@ fn spent_before(header: &Header) -> Spent {
 }
 
 /// Renders with a progress bar on standard error, if that is a terminal.
-fn show_progress(job: Job, interrupt: &AtomicBool) -> Result<Headless> {
+fn show_progress(job: RenderJob, interrupt: &AtomicBool) -> Result<Headless> {
     const STEPS: u64 = 1000;
     let limits = job.limits;
     let before = job.resume.as_ref().map_or(0.0, samples_per_pixel);
@@ -195,8 +195,12 @@ fn finish(
 }
 
 /// What a snapshot says about itself.
-pub(super) fn header(settings: &Settings, files: Vec<Fingerprint>, spent: Spent) -> Result<Header> {
-    Ok(Header {
+pub(super) fn header(
+    settings: &Settings,
+    files: Vec<Fingerprint>,
+    spent: Spent,
+) -> Result<SnapshotHeader> {
+    Ok(SnapshotHeader {
         scene: scene::to_toml(settings, None)?,
         strategy: toml::to_string(&settings.strategy)
             .map_err(|e| Error::invalid("", "strategy", e.to_string()))?,

@@ -10,7 +10,7 @@ use super::scene_source::SceneArguments;
 use super::{Exit, Refusal, print};
 use crate::error::{Error, NO_PROGRESS};
 use crate::scene::{self, VolumeCache};
-use crate::transport::observer::{Observer, Step};
+use crate::transport::observer::{Observer, PathStep};
 use crate::transport::vertex::Vertex;
 use crate::transport::{Frame, PathSample};
 
@@ -56,9 +56,9 @@ struct Log {
 }
 
 impl Observer for Log {
-    fn step(&mut self, step: Step) {
+    fn step(&mut self, step: PathStep) {
         let line = match step {
-            Step::Ray { ray, t_max, throughput } => {
+            PathStep::Ray { ray, t_max, throughput } => {
                 self.rays += 1;
                 format!(
                     "ray {} from {} towards {}, length {t_max}, throughput {}",
@@ -68,17 +68,17 @@ impl Observer for Log {
                     triple(throughput)
                 )
             }
-            Step::Emission { contribution } => {
+            PathStep::Emission { contribution } => {
                 format!("    volume emission, adds {}", triple(contribution))
             }
-            Step::End { contribution } => {
+            PathStep::End { contribution } => {
                 format!("    end of the ray, adds {}", triple(contribution))
             }
-            Step::Absorbed { point } => format!("    absorbed at {}", triple(point)),
-            Step::Vertex { vertex, throughput } => {
+            PathStep::Absorbed { point } => format!("    absorbed at {}", triple(point)),
+            PathStep::Vertex { vertex, throughput } => {
                 format!("    {}, throughput {}", describe(vertex), triple(throughput))
             }
-            Step::Light { contribution } => {
+            PathStep::Light { contribution } => {
                 format!("    sampled light, adds {}", triple(contribution))
             }
         };

@@ -19,13 +19,13 @@ use super::{Exit, Refusal, print, warn};
 use crate::error::{Error, Result};
 use crate::render::pool::{Pool, Priority};
 use crate::render::sweep::{
-    DEFAULT_SECONDS, Progress, Ranking, SweepJob, Swept, Trial, plan, quick_size, sweep,
+    DEFAULT_SECONDS, Ranking, SweepJob, SweepProgress, Swept, Trial, plan, quick_size, sweep,
 };
 use crate::render::time_slice::Amount;
 use crate::scene::effect::no_effect_with;
 use crate::scene::{self, Settings, VolumeCache};
 use crate::transport::Scene;
-use table::Table;
+use table::SweepTable;
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -68,7 +68,7 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
     let swept = show_progress(arguments, &settings, (&scene, &trials), &pool, &interrupt)?;
     let cpu_seconds = process_seconds() - cpu_before;
     let ranking = swept.ranking(&trials);
-    let table = Table::new(
+    let table = SweepTable::new(
         (arguments.scene.name(), &settings.film),
         (&swept, &ranking),
         (pool.threads(), cpu_seconds),
@@ -98,8 +98,10 @@ fn show_progress(
     let job = SweepJob { scene, trials, size, seed: settings.film.seed, amount };
     let bar: ProgressBar = progress_bar(STEPS);
     let result = sweep(&job, pool, interrupt, &mut |progress| match progress {
-        Progress::Preparing(done, all) => bar.set_message(format!("preparing {done} of {all}")),
-        Progress::Rendering(part) => {
+        SweepProgress::Preparing(done, all) => {
+            bar.set_message(format!("preparing {done} of {all}"))
+        }
+        SweepProgress::Rendering(part) => {
             bar.set_position((part * STEPS as f64) as u64);
             bar.set_message("rendering");
         }

@@ -20,7 +20,7 @@ const FONT: &str = "flambeau";
 const LETTERS: f64 = 16.0;
 
 /// Place of a pixel, from the upper left corner.
-pub(super) type Place = (i32, i32);
+pub(super) type PixelPosition = (i32, i32);
 
 /// Where a text stands with respect to its place, across.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -80,19 +80,25 @@ impl Canvas {
     }
 
     /// Fills the rectangle between two corners, both of them in it.
-    pub fn fill(&mut self, [first, last]: [Place; 2], color: [u8; 3]) -> Result<()> {
+    pub fn fill(&mut self, [first, last]: [PixelPosition; 2], color: [u8; 3]) -> Result<()> {
         // `plotters` leaves the last row and column out.
         let end = (last.0 + 1, last.1 + 1);
         self.draw(&Rectangle::new([first, end], style(color, 1).filled()))
     }
 
     /// Joins places by straight lines, `width` pixels wide.
-    pub fn line(&mut self, places: Vec<Place>, color: [u8; 3], width: u32) -> Result<()> {
+    pub fn line(&mut self, places: Vec<PixelPosition>, color: [u8; 3], width: u32) -> Result<()> {
         self.draw(&PathElement::new(places, style(color, width)))
     }
 
     /// Writes a line of text whose middle is at the height of `at`.
-    pub fn text(&mut self, at: Place, align: Align, color: [u8; 3], text: &str) -> Result<()> {
+    pub fn text(
+        &mut self,
+        at: PixelPosition,
+        align: Align,
+        color: [u8; 3],
+        text: &str,
+    ) -> Result<()> {
         load_font()?;
         let across = match align {
             Align::Left => HPos::Left,
@@ -114,7 +120,7 @@ impl Canvas {
 
     fn draw<E>(&mut self, element: &E) -> Result<()>
     where
-        for<'a> &'a E: PointCollection<'a, Place>,
+        for<'a> &'a E: PointCollection<'a, PixelPosition>,
         for<'a> E: Drawable<BitMapBackend<'a>>,
     {
         let size = (self.size.x, self.size.y);

@@ -10,7 +10,7 @@ use crate::error::Result;
 
 /// Everything on it, from top to bottom.
 #[derive(Default)]
-pub struct Sheet<'a> {
+pub struct Export<'a> {
     /// Pictures beside each other, of one size.
     pub panes: Vec<Pane>,
     /// What their colors mean, where they are maps.
@@ -18,7 +18,7 @@ pub struct Sheet<'a> {
     /// Sentences.
     pub words: Vec<String>,
     /// Figures.
-    pub tables: Vec<Table>,
+    pub tables: Vec<FigureTable>,
 }
 
 /// A picture with what is drawn over it.
@@ -33,12 +33,12 @@ pub struct Pane {
     /// The first column right of a divider.
     pub divider: Option<u32>,
     /// Two corners of a rectangle, the second one just outside of it.
-    pub rectangle: Option<[UVec2; 2]>,
+    pub region: Option<[UVec2; 2]>,
 }
 
 /// Figures in rows and columns.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Table {
+pub struct FigureTable {
     /// What stands above the columns.
     pub headings: Vec<String>,
     /// The rows, of as many cells.
@@ -62,27 +62,27 @@ const DARK: [u8; 3] = [19, 19, 19];
 /// Dividers and rectangles.
 const LIGHT: [u8; 3] = [238, 238, 238];
 
-/// Draws `sheet` and writes it.
+/// Draws `export` and writes it.
 ///
 /// # Errors
 /// When the system refuses to write.
-pub fn write(path: &Path, sheet: &Sheet<'_>) -> Result<()> {
-    let size = sheet.panes.first().map_or(UVec2::ONE, |pane| pane.size).max(UVec2::ONE);
-    let count = sheet.panes.len().max(1) as u32;
+pub fn write(path: &Path, export: &Export<'_>) -> Result<()> {
+    let size = export.panes.first().map_or(UVec2::ONE, |pane| pane.size).max(UVec2::ONE);
+    let count = export.panes.len().max(1) as u32;
     let width = count * size.x + GAP * (count - 1);
     let zoom = LEAST_WIDTH.div_ceil(width);
     let shown = UVec2::new(count * size.x * zoom + GAP * (count - 1), size.y * zoom);
-    let legend = if sheet.legend.is_some() { legend::HEIGHT } else { 0 };
-    let words = wrapped(&sheet.words, shown.x as i32 - 2 * MARGIN)?;
-    let rows: usize = sheet.tables.iter().map(|table| table.rows.len() + 1).sum();
-    let blocks = usize::from(!words.is_empty()) + sheet.tables.len();
+    let legend = if export.legend.is_some() { legend::HEIGHT } else { 0 };
+    let words = wrapped(&export.words, shown.x as i32 - 2 * MARGIN)?;
+    let rows: usize = export.tables.iter().map(|table| table.rows.len() + 1).sum();
+    let blocks = usize::from(!words.is_empty()) + export.tables.len();
     let text = (words.len() + rows) as i32 * LINE + (blocks as i32 + 1) * MARGIN / 2;
     let mut canvas = Canvas::new(shown + UVec2::new(0, legend + text.max(0) as u32));
-    for (index, pane) in sheet.panes.iter().enumerate() {
+    for (index, pane) in export.panes.iter().enumerate() {
         let left = index as u32 * (size.x * zoom + GAP);
         pane.draw(&mut canvas, left, zoom)?;
     }
-    if let Some(legend) = &sheet.legend {
+    if let Some(legend) = &export.legend {
         legend.draw(&mut canvas, shown.y as i32)?;
     }
     let mut top = (shown.y + legend) as i32 + MARGIN / 2;
@@ -91,9 +91,9 @@ pub fn write(path: &Path, sheet: &Sheet<'_>) -> Result<()> {
         top += LINE;
     }
     top += if words.is_empty() { 0 } else { MARGIN / 2 };
-    let columns = sheet.tables.iter().map(|table| table.headings.len()).max().unwrap_or(1);
+    let columns = export.tables.iter().map(|table| table.headings.len()).max().unwrap_or(1);
     let step = ((shown.x as i32 - 2 * MARGIN) / columns.max(1) as i32).min(WIDEST);
-    for table in &sheet.tables {
+    for table in &export.tables {
         top = table.draw(&mut canvas, top, step)? + MARGIN / 2;
     }
     canvas.write(path)
@@ -109,7 +109,7 @@ impl Pane {
                 canvas.put(UVec2::new(left + x, y), code.copied().unwrap_or_default());
             }
         }
-        if let Some([first, end]) = self.rectangle {
+        if let Some([first, end]) = self.region {
             let corner = |at: UVec2| (at * zoom).as_ivec2() + glam::IVec2::new(left as i32, 0);
             frame(canvas, corner(first), corner(end))?;
         }
@@ -152,7 +152,7 @@ fn chip(canvas: &mut Canvas, text: &str, (low, high): (i32, i32), align: Align) 
     canvas.text((x + 6, 7 + LINE / 2), Align::Left, color::TEXT, text)
 }
 
-impl Table {
+impl FigureTable {
     /// Draws it from `top` on down, a column every `step` pixels; where it ends.
     fn draw(&self, canvas: &mut Canvas, top: i32, step: i32) -> Result<i32> {
         let mut y = top + LINE / 2;
@@ -194,10 +194,10 @@ mod tests {
         Pane { size, codes: vec![code; (size.x * size.y) as usize], ..Pane::default() }
     }
 
-    fn drawn(sheet: &Sheet<'_>) -> image::RgbImage {
+    fn drawn(export: &Export<'_>) -> image::RgbImage {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("sheet.png");
-        write(&path, sheet).unwrap();
+        write(&path, export).unwrap();
         image::open(&path).unwrap().into_rgb8()
     }
 
@@ -205,7 +205,7 @@ mod tests {
     fn pictures_stand_pixel_for_pixel_beside_each_other() {
         let size = UVec2::new(400, 100);
         let panes = vec![pane(size, [200, 0, 0]), pane(size, [0, 0, 200])];
-        let picture = drawn(&Sheet { panes, ..Sheet::default() });
+        let picture = drawn(&Export { panes, ..Export::default() });
         assert_eq!(picture.width(), 2 * 400 + GAP);
         assert_eq!(picture.get_pixel(399, 50).0, [200, 0, 0]);
         assert_eq!(picture.get_pixel(402, 50).0, [0, 0, 200]);
@@ -217,10 +217,10 @@ mod tests {
         let divided = Pane {
             names: vec!["A  Baseline".to_owned(), "B  Full".to_owned()],
             divider: Some(32),
-            rectangle: Some([UVec2::new(40, 20), UVec2::new(50, 30)]),
+            region: Some([UVec2::new(40, 20), UVec2::new(50, 30)]),
             ..pane(UVec2::new(64, 48), [0, 90, 0])
         };
-        let picture = drawn(&Sheet { panes: vec![divided], ..Sheet::default() });
+        let picture = drawn(&Export { panes: vec![divided], ..Export::default() });
         assert_eq!(picture.width(), 640);
         assert_eq!(picture.get_pixel(320, 400).0, LIGHT, "the divider");
         assert_eq!(picture.get_pixel(450, 199).0, LIGHT, "the rectangle's upper side");
@@ -232,13 +232,13 @@ mod tests {
 
     #[test]
     fn words_and_figures_have_room_below() {
-        let below = |sheet: &Sheet<'_>| drawn(sheet).height() - 50;
+        let below = |export: &Export<'_>| drawn(export).height() - 50;
         let with = |words: &[&str], rows: usize| {
             let words = words.iter().map(|&word| word.to_owned()).collect();
             let row = vec!["A".to_owned(), "16".to_owned()];
-            let table = Table { headings: row.clone(), rows: vec![row; rows] };
+            let table = FigureTable { headings: row.clone(), rows: vec![row; rows] };
             let panes = vec![pane(UVec2::new(640, 50), [9; 3])];
-            below(&Sheet { panes, words, tables: vec![table], ..Sheet::default() })
+            below(&Export { panes, words, tables: vec![table], ..Export::default() })
         };
         let one = with(&["B needs 1/4 of A's time"], 2);
         assert_eq!(with(&["B needs 1/4 of A's time"], 3) - one, LINE as u32);

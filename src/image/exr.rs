@@ -13,7 +13,7 @@ use exr::prelude::{
 };
 use glam::UVec2;
 
-pub use super::exr_header::Header;
+pub use super::exr_header::SnapshotHeader;
 use super::exr_header::{Attributes, attributes};
 use super::exr_layout::{SAMPLES, channel_names, push_pixel, state_from, state_names, words_at};
 use crate::error::{Error, Result};
@@ -30,7 +30,7 @@ pub struct Info {
     /// Names of the channels.
     pub channels: Vec<String>,
     /// The header, if Flambeau wrote it.
-    pub header: Option<Header>,
+    pub header: Option<SnapshotHeader>,
     /// Mean samples of a pixel, if Flambeau wrote it.
     pub samples: f64,
     /// Counts over the whole film, as the file claims.
@@ -41,7 +41,7 @@ pub struct Info {
 ///
 /// # Errors
 /// When the system refuses to write.
-pub fn write(path: &Path, film: &Film, header: &Header) -> Result<()> {
+pub fn write(path: &Path, film: &Film, header: &SnapshotHeader) -> Result<()> {
     let size = film.size();
     let names = channel_names();
     let pixels = size.x as usize * size.y as usize;
@@ -114,7 +114,7 @@ pub struct Snapshot {
     /// The film, as it was when it was written.
     pub film: Film,
     /// What it says about itself.
-    pub header: Header,
+    pub header: SnapshotHeader,
 }
 
 /// Reads a snapshot to go on from.
@@ -316,8 +316,8 @@ mod tests {
         film
     }
 
-    fn header() -> Header {
-        Header {
+    fn header() -> SnapshotHeader {
+        SnapshotHeader {
             scene: "# Rauch über Feuer 煙\n[film]\nsize = [37, 19]\n".to_owned(),
             strategy: "emission_decoupling = true\n".to_owned(),
             seed: u64::MAX - 3,

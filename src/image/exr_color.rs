@@ -33,7 +33,7 @@ pub fn read(path: &Path) -> Result<Pixels> {
         let reason = "it has no layer with channels R, G and B; write one, flat and not deep";
         return Err(invalid(path, "R", reason));
     };
-    let mut target = Target::new(path, part, channels)?;
+    let mut target = BlockTarget::new(path, part, channels)?;
     let mut failure = None;
     let result = reader
         .filter_chunks(false, |_, tile, block| {
@@ -72,7 +72,7 @@ fn channels_of(part: &Part) -> Option<[usize; 3]> {
 }
 
 /// A picture that is put together from blocks.
-struct Target<'a> {
+struct BlockTarget<'a> {
     path: &'a Path,
     size: UVec2,
     channels: [usize; 3],
@@ -82,7 +82,7 @@ struct Target<'a> {
     line: Vec<f32>,
 }
 
-impl<'a> Target<'a> {
+impl<'a> BlockTarget<'a> {
     fn new(path: &'a Path, part: &Part, channels: [usize; 3]) -> Result<Self> {
         for channel in channels.map(|index| &part.channels.list[index]) {
             if channel.sampling != Vec2(1, 1) {

@@ -18,7 +18,7 @@ use crate::render::film::{Film, Totals};
 
 /// What a snapshot says about itself.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Header {
+pub struct SnapshotHeader {
     /// The whole setting as a scene file, with absolute file names.
     pub scene: String,
     /// The sampling strategy as TOML.
@@ -57,7 +57,7 @@ const GUARD_HITS: &str = "flambeau.guard_hits";
 ///
 /// # Errors
 /// A name of a file that cannot be written down; none of those that a scene can have.
-pub fn attributes(film: &Film, header: &Header) -> Result<LayerAttributes> {
+pub fn attributes(film: &Film, header: &SnapshotHeader) -> Result<LayerAttributes> {
     let words = |value: &str| AttributeValue::Text(text(value));
     // As text, for OpenEXR's whole numbers end at 2³¹.
     let count = |value: u64| AttributeValue::Text(text(&value.to_string()));
@@ -109,9 +109,9 @@ impl<'a> Attributes<'a> {
     }
 
     /// What the file says about itself.
-    pub fn header(&self) -> Result<Header> {
+    pub fn header(&self) -> Result<SnapshotHeader> {
         let cpu_seconds_setup = self.number(CPU_SECONDS_SETUP)?;
-        Ok(Header {
+        Ok(SnapshotHeader {
             scene: self.text(SCENE)?,
             strategy: self.text(STRATEGY)?,
             seed: self.count(SEED)?,

@@ -139,14 +139,14 @@ fn whole(value: f32) -> Option<u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::two_float::Pair;
+    use crate::math::two_float::TwoFloat;
 
     #[test]
     fn names_follow_the_fields() {
         let names = state_names();
         assert_eq!(names.len(), STATE_WORDS);
         let mut sums: Sums = bytemuck::Zeroable::zeroed();
-        sums.beauty[5][2] = Pair { sum: 1.0, rest: 2.0 };
+        sums.beauty[5][2] = TwoFloat { sum: 1.0, rest: 2.0 };
         sums.emission[0].sum = 3.0;
         sums.indirect[1].rest = 4.0;
         sums.alpha.sum = 5.0;

@@ -3,7 +3,7 @@
 //! [`exr`] keeps everything and can be continued; [`npy`] is the beauty for scripts; [`png`] is what
 //! the screen shows, through the curves of [`tone`]. [`ramp`] turns numbers into colors, [`map`] a
 //! number a pixel into a picture with its [`legend`], [`plot`] numbers over time into curves, [`bars`]
-//! some that are compared into a chart; [`sheet`] is a view with its figures below.
+//! some that are compared into a chart; [`export`] is a view with its figures below.
 //! [`metrics`] tell how far a picture is from a [`reference`](mod@reference).
 
 pub mod bars;

@@ -6,7 +6,7 @@ use std::path::Path;
 use glam::UVec2;
 use npyz::WriterBuilder;
 
-use super::npy_header::{Header, split};
+use super::npy_header::{NpyHeader, split};
 use crate::error::{Error, Result};
 use crate::files;
 
@@ -76,7 +76,7 @@ pub fn read(path: &Path) -> Result<(UVec2, Vec<[f32; 4]>)> {
 }
 
 /// The size and the number of channels, if it is the shape of a picture.
-fn extent(header: &Header) -> Option<(UVec2, usize)> {
+fn extent(header: &NpyHeader) -> Option<(UVec2, usize)> {
     let (height, width, channels) = match header.shape[..] {
         [height, width] => (height, width, 1),
         [height, width, channels @ (3 | 4)] => (height, width, channels),

@@ -6,7 +6,7 @@
 
 /// What a header says.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Header {
+pub struct NpyHeader {
     /// The type of a number, such as `<f4`.
     pub descr: String,
     /// Whether the first index runs fastest.
@@ -29,7 +29,7 @@ const SHAPE: &str = "shape";
 ///
 /// # Errors
 /// What is wrong with the header.
-pub fn split(bytes: &[u8]) -> Result<(Header, &[u8]), Flaw> {
+pub fn split(bytes: &[u8]) -> Result<(NpyHeader, &[u8]), Flaw> {
     let flaw = ("", "it ends inside of its header; save it again");
     let rest = bytes.strip_prefix(MAGIC).ok_or(("", "it does not begin as a numpy file"))?;
     let (version, rest) = rest.split_at_checked(2).ok_or(flaw)?;
@@ -45,7 +45,7 @@ pub fn split(bytes: &[u8]) -> Result<(Header, &[u8]), Flaw> {
     Ok((parse(text)?, data))
 }
 
-fn parse(text: &str) -> Result<Header, Flaw> {
+fn parse(text: &str) -> Result<NpyHeader, Flaw> {
     let unreadable = ("", "its header is not a dictionary; save it with numpy.save");
     let (mut descr, mut fortran_order, mut shape) = (None, None, None);
     let mut scanner = Scanner { rest: text };
@@ -69,7 +69,7 @@ fn parse(text: &str) -> Result<Header, Flaw> {
             return Err(unreadable);
         }
     }
-    Ok(Header {
+    Ok(NpyHeader {
         descr: descr.ok_or((DESCR, "it is missing"))?,
         fortran_order: fortran_order.ok_or((FORTRAN_ORDER, "it is missing"))?,
         shape: shape.ok_or((SHAPE, "it is missing"))?,
@@ -126,7 +126,7 @@ mod tests {
 
     #[test]
     fn headers_of_all_kinds_are_read() {
-        let header = |shape: &[usize]| Header {
+        let header = |shape: &[usize]| NpyHeader {
             descr: "<f4".to_owned(),
             fortran_order: false,
             shape: shape.to_vec(),

@@ -4,12 +4,12 @@ use std::path::Path;
 
 use glam::UVec2;
 
-use super::drawing::{Align, Canvas, Place, color};
+use super::drawing::{Align, Canvas, PixelPosition, color};
 use super::log_axis::LogAxis;
 use crate::error::Result;
 
 /// A named curve.
-pub struct Curve<'a> {
+pub struct PlotCurve<'a> {
     /// What the legend calls it.
     pub name: &'a str,
     /// Its points from left to right, both coordinates positive.
@@ -17,7 +17,7 @@ pub struct Curve<'a> {
 }
 
 /// An axis.
-pub struct Axis<'a> {
+pub struct PlotAxis<'a> {
     /// What it counts, with its unit.
     pub name: &'a str,
     /// How a number is written along it.
@@ -29,9 +29,9 @@ pub struct Plot<'a> {
     /// A sentence above the curves.
     pub title: &'a str,
     /// Across and up.
-    pub axes: [Axis<'a>; 2],
+    pub axes: [PlotAxis<'a>; 2],
     /// At most as many as there are colors; more begin again with the first.
-    pub curves: &'a [Curve<'a>],
+    pub curves: &'a [PlotCurve<'a>],
 }
 
 const SIZE: UVec2 = UVec2::new(900, 560);
@@ -94,13 +94,14 @@ fn grid(canvas: &mut Canvas, plot: &Plot<'_>, scales: &[LogAxis; 2]) -> Result<(
 
 fn draw(
     canvas: &mut Canvas,
-    curve: &Curve<'_>,
+    curve: &PlotCurve<'_>,
     scales: &[LogAxis; 2],
     color: [u8; 3],
 ) -> Result<()> {
-    let place =
-        |point: &[f64; 2]| -> Place { (scales[0].pixel(point[0]), scales[1].pixel(point[1])) };
-    let places: Vec<Place> = curve.points.iter().map(place).collect();
+    let place = |point: &[f64; 2]| -> PixelPosition {
+        (scales[0].pixel(point[0]), scales[1].pixel(point[1]))
+    };
+    let places: Vec<PixelPosition> = curve.points.iter().map(place).collect();
     if let Some(&(x, y)) = places.last() {
         // The end is marked, so that a curve of one point shows.
         canvas.fill([(x - 3, y - 3), (x + 3, y + 3)], color)?;
@@ -113,14 +114,14 @@ mod tests {
     use super::*;
     use crate::format::percent;
 
-    fn axes() -> [Axis<'static>; 2] {
+    fn axes() -> [PlotAxis<'static>; 2] {
         [
-            Axis { name: "CPU seconds", label: |x| x.to_string() },
-            Axis { name: "noise", label: percent },
+            PlotAxis { name: "CPU seconds", label: |x| x.to_string() },
+            PlotAxis { name: "noise", label: percent },
         ]
     }
 
-    fn drawn(curves: &[Curve<'_>]) -> image::RgbImage {
+    fn drawn(curves: &[PlotCurve<'_>]) -> image::RgbImage {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("plot.png");
         write(&path, &Plot { title: "B needs 1/38 of A's time", axes: axes(), curves }).unwrap();
@@ -131,8 +132,10 @@ mod tests {
     fn curves_go_where_their_points_are() {
         let points: Vec<[f64; 2]> =
             (0..40).map(|i| 1.25_f64.powi(i)).map(|t| [0.01 * t, 0.3 / t.sqrt()]).collect();
-        let picture =
-            drawn(&[Curve { name: "A", points: &points }, Curve { name: "B", points: &[] }]);
+        let picture = drawn(&[
+            PlotCurve { name: "A", points: &points },
+            PlotCurve { name: "B", points: &[] },
+        ]);
         assert_eq!(picture.dimensions(), (SIZE.x, SIZE.y));
         let scales = [0, 1].map(|axis| axis_over(points.iter().map(|point| point[axis]), axis));
         for point in &points[1..39] {
@@ -148,7 +151,7 @@ mod tests {
     #[test]
     fn few_points_or_none_make_a_plot_too() {
         drawn(&[]);
-        drawn(&[Curve { name: "one", points: &[[3.0, 0.1]] }]);
-        drawn(&[Curve { name: "flat", points: &[[1e-9, 0.1], [1e9, 0.1]] }]);
+        drawn(&[PlotCurve { name: "one", points: &[[3.0, 0.1]] }]);
+        drawn(&[PlotCurve { name: "flat", points: &[[1e-9, 0.1], [1e9, 0.1]] }]);
     }
 }

@@ -7,7 +7,7 @@ mod sun;
 mod tree;
 
 pub use local::{Point, Spot};
-pub use scores::{Glimpse, Scores, Shares};
+pub use scores::{LightProbabilities, Scores, Visibility};
 pub use sun::Sun;
 pub use tree::{Emitter, LightTree, Receiver};
 
@@ -69,7 +69,7 @@ pub struct LightSample {
 
 /// Which lights take part, and how one is chosen among them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Choice {
+pub struct LightChoice {
     /// Emissive volumes are among them.
     pub volumes: bool,
     /// How one is chosen.
@@ -84,12 +84,12 @@ pub enum By {
     /// Each has the same probability, wherever it is.
     Uniform,
     /// By what is known of the place. They hold for one receiver.
-    Shares(Shares),
+    Shares(LightProbabilities),
 }
 
 /// A light that was chosen.
 #[derive(Clone, Copy, Debug)]
-pub struct Chosen<'s> {
+pub struct ChosenLight<'s> {
     /// Its index in the scene.
     pub index: u32,
     /// The light.
@@ -139,13 +139,18 @@ impl Lights {
 
     /// The light that `pick`, in [0, 1), chooses for a receiver; `None` where no light can bring
     /// anything.
-    pub fn choose(&self, to: &Receiver, choice: &Choice, pick: f64) -> Option<Chosen<'_>> {
+    pub fn choose(
+        &self,
+        to: &Receiver,
+        choice: &LightChoice,
+        pick: f64,
+    ) -> Option<ChosenLight<'_>> {
         let (index, probability) = self.selector(choice.volumes).choose(to, &choice.by, pick)?;
-        Some(Chosen { index, light: self.lights.get(index as usize)?, probability })
+        Some(ChosenLight { index, light: self.lights.get(index as usize)?, probability })
     }
 
     /// Probability with which [`Lights::choose`] draws a light, by its index in the scene.
-    pub fn probability(&self, light: u32, to: &Receiver, choice: &Choice) -> f32 {
+    pub fn probability(&self, light: u32, to: &Receiver, choice: &LightChoice) -> f32 {
         self.selector(choice.volumes).probability(light, to, &choice.by)
     }
 
@@ -167,18 +172,24 @@ impl Lights {
         to: &Receiver,
         volumes: bool,
         value: impl Fn(Vec3A) -> f32,
-    ) -> Choice {
+    ) -> LightChoice {
         let selector = self.selector(volumes);
         let shares = scores.at(|light| {
             let guess = selector.guess(light, to);
             guess.map_or(0.0, |(irradiance, direction)| irradiance * value(direction))
         });
-        Choice { volumes, by: By::Shares(shares) }
+        LightChoice { volumes, by: By::Shares(shares) }
     }
 
     /// Density over solid angle with which, from a receiver, the direction is drawn that ended at
     /// `hit` on the surface `index`, the choice of the light included; 0 where it cannot be.
-    pub fn pdf_of_surface(&self, index: usize, to: &Receiver, choice: &Choice, hit: &Hit) -> f32 {
+    pub fn pdf_of_surface(
+        &self,
+        index: usize,
+        to: &Receiver,
+        choice: &LightChoice,
+        hit: &Hit,
+    ) -> f32 {
         let Some(Some(light)) = self.light_of_surface.get(index) else { return 0.0 };
         match &self.lights[*light as usize] {
             Light::Surface { shape, .. } => {
@@ -189,7 +200,7 @@ impl Lights {
     }
 
     /// Probability with which the emissive volume `instance` is chosen from a receiver.
-    pub fn probability_of_volume(&self, instance: u32, to: &Receiver, choice: &Choice) -> f32 {
+    pub fn probability_of_volume(&self, instance: u32, to: &Receiver, choice: &LightChoice) -> f32 {
         match self.light_of_instance.get(instance as usize) {
             Some(Some(light)) => self.selector(choice.volumes).probability(*light, to, &choice.by),
             _ => 0.0,
@@ -200,7 +211,7 @@ impl Lights {
     /// looking there from a receiver by a choice.
     pub fn suns_behind(
         &self,
-        from: Option<(&Receiver, &Choice)>,
+        from: Option<(&Receiver, &LightChoice)>,
         direction: Vec3A,
     ) -> impl Iterator<Item = (&Sun, f32)> {
         self.all.suns().filter_map(move |index| match &self.lights[index as usize] {

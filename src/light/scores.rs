@@ -16,7 +16,7 @@ const DOUBT: f32 = 0.25;
 
 /// What a look at one of the lights tells of it from near a place.
 #[derive(Clone, Copy, Debug)]
-pub struct Glimpse {
+pub struct Visibility {
     /// The light, by its index in the scene; the hierarchy chose it.
     pub light: u32,
     /// The part of its light that is not hidden or dimmed.
@@ -36,7 +36,7 @@ pub struct Scores {
 
 /// A distribution over the lights at one receiver.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Shares {
+pub struct LightProbabilities {
     /// Lights with s_l, which sum to 1 − r.
     best: [(u32, f32); BEST],
     /// r.
@@ -45,7 +45,7 @@ pub struct Shares {
 
 /// What several looks tell of one light.
 #[derive(Clone, Copy, Debug)]
-struct Tally {
+struct LightTally {
     light: u32,
     /// Mean of what is seen of it.
     seen: f32,
@@ -59,12 +59,12 @@ impl Scores {
     ///
     /// With S_l the share of light l in what is seen and h_l its share of the looks, those without
     /// a name get theirs by r = Σ S_l / Σ h_l over them.
-    pub fn new(glimpses: &mut [Glimpse]) -> Option<Self> {
-        glimpses.sort_by_key(|glimpse| glimpse.light);
-        let mut tallies: Vec<Tally> =
-            glimpses.chunk_by(|a, b| a.light == b.light).map(Tally::new).collect();
+    pub fn new(visibilities: &mut [Visibility]) -> Option<Self> {
+        visibilities.sort_by_key(|visibility| visibility.light);
+        let mut tallies: Vec<LightTally> =
+            visibilities.chunk_by(|a, b| a.light == b.light).map(LightTally::new).collect();
         tallies.sort_by(|a, b| b.found.total_cmp(&a.found));
-        let sums = |of: &[Tally]| {
+        let sums = |of: &[LightTally]| {
             of.iter().fold((0.0, 0.0), |(found, looks), t| (found + t.found, looks + t.looks))
         };
         let (found, looks) = sums(&tallies);
@@ -83,7 +83,7 @@ impl Scores {
     }
 
     /// The distribution at a receiver where `guess` tells what to expect of a light by name.
-    pub(super) fn at(&self, guess: impl Fn(u32) -> f32) -> Shares {
+    pub(super) fn at(&self, guess: impl Fn(u32) -> f32) -> LightProbabilities {
         let mut best = self.best;
         let mut total = 0.0;
         for (light, score) in best.iter_mut().filter(|named| named.1 > 0.0) {
@@ -91,26 +91,26 @@ impl Scores {
             total += *score;
         }
         if !(total >= f32::MIN_POSITIVE && total.is_finite()) {
-            return Shares { best: [(0, 0.0); BEST], rest: 1.0 };
+            return LightProbabilities { best: [(0, 0.0); BEST], rest: 1.0 };
         }
         let scale = (1.0 - self.rest) / total;
         best.iter_mut().for_each(|(_, share)| *share *= scale);
-        Shares { best, rest: self.rest }
+        LightProbabilities { best, rest: self.rest }
     }
 }
 
-impl Tally {
+impl LightTally {
     /// Of looks at one light, of which there is at least one. Few looks don't say that it is hidden
     /// for good.
-    fn new(glimpses: &[Glimpse]) -> Self {
-        let looks = glimpses.len() as f32;
-        let sum = |of: fn(&Glimpse) -> f32| glimpses.iter().map(of).sum::<f32>();
+    fn new(visibilities: &[Visibility]) -> Self {
+        let looks = visibilities.len() as f32;
+        let sum = |of: fn(&Visibility) -> f32| visibilities.iter().map(of).sum::<f32>();
         let seen = (sum(|g| g.seen) + DOUBT) / (looks + DOUBT);
-        Self { light: glimpses[0].light, seen, found: seen * sum(|g| g.guess), looks }
+        Self { light: visibilities[0].light, seen, found: seen * sum(|g| g.guess), looks }
     }
 }
 
-impl Shares {
+impl LightProbabilities {
     /// The light that `pick`, in [0, 1), chooses by name, or the pick that is left to the hierarchy.
     pub(super) fn pick(&self, pick: f64) -> Result<u32, f64> {
         let mut left = pick;

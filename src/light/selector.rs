@@ -13,7 +13,7 @@ pub(super) struct Selector {
     placed: Vec<u32>,
     tree: LightTree,
     /// Where each light of the scene is.
-    places: Vec<Place>,
+    places: Vec<LeafPlace>,
 }
 
 /// A sun.
@@ -27,7 +27,7 @@ struct DistantLight {
 }
 
 #[derive(Clone, Copy, Debug)]
-enum Place {
+enum LeafPlace {
     Sun(u32),
     Tree(u32),
     Nowhere,
@@ -48,14 +48,14 @@ impl Selector {
                         importance: importance.min(MOST_IMPORTANT),
                         direction: sun.direction(),
                     });
-                    Place::Sun(suns.len() as u32 - 1)
+                    LeafPlace::Sun(suns.len() as u32 - 1)
                 }
                 (_, Some(emitter)) => {
                     placed.push(index);
                     emitters.push(emitter);
-                    Place::Tree(emitters.len() as u32 - 1)
+                    LeafPlace::Tree(emitters.len() as u32 - 1)
                 }
-                (_, None) => Place::Nowhere,
+                (_, None) => LeafPlace::Nowhere,
             });
         }
         Self { suns, placed, tree: LightTree::new(&emitters), places }
@@ -117,7 +117,7 @@ impl Selector {
     /// Probability with which [`Selector::choose`] draws a light.
     pub(super) fn probability(&self, light: u32, to: &Receiver, by: &By) -> f32 {
         match (by, self.place(light)) {
-            (_, Place::Nowhere) => 0.0,
+            (_, LeafPlace::Nowhere) => 0.0,
             (By::Hierarchy, place) => self.probability_by_hierarchy(place, to),
             (By::Uniform, _) => 1.0 / self.len() as f32,
             (By::Shares(shares), place) => {
@@ -126,40 +126,40 @@ impl Selector {
         }
     }
 
-    fn place(&self, light: u32) -> Place {
-        self.places.get(light as usize).copied().unwrap_or(Place::Nowhere)
+    fn place(&self, light: u32) -> LeafPlace {
+        self.places.get(light as usize).copied().unwrap_or(LeafPlace::Nowhere)
     }
 
     /// Rough irradiance of a light at the receiver, if nothing is in the way, and the unit
     /// direction towards its middle; `None` where it brings nothing.
     pub(super) fn guess(&self, light: u32, to: &Receiver) -> Option<(f32, Vec3A)> {
         match self.place(light) {
-            Place::Sun(sun) => {
+            LeafPlace::Sun(sun) => {
                 let sun = &self.suns[sun as usize];
                 Some((sun.importance, sun.direction))
             }
-            Place::Tree(index) => {
+            LeafPlace::Tree(index) => {
                 let towards = self.tree.center_of(index)? - to.position;
                 let importance = self.tree.importance_of(index, to);
                 (importance > 0.0).then(|| (importance, towards.normalize_or_zero()))
             }
-            Place::Nowhere => None,
+            LeafPlace::Nowhere => None,
         }
     }
 
-    fn probability_by_hierarchy(&self, place: Place, to: &Receiver) -> f32 {
+    fn probability_by_hierarchy(&self, place: LeafPlace, to: &Receiver) -> f32 {
         match place {
-            Place::Sun(sun) => {
+            LeafPlace::Sun(sun) => {
                 let total = self.total(to);
                 if total > 0.0 { self.suns[sun as usize].importance / total } else { 0.0 }
             }
-            Place::Tree(index) if self.suns.is_empty() => self.tree.probability(index, to),
-            Place::Tree(index) => {
+            LeafPlace::Tree(index) if self.suns.is_empty() => self.tree.probability(index, to),
+            LeafPlace::Tree(index) => {
                 let total = self.total(to);
                 let share = if total > 0.0 { self.tree.importance(to) / total } else { 0.0 };
                 share * self.tree.probability(index, to)
             }
-            Place::Nowhere => 0.0,
+            LeafPlace::Nowhere => 0.0,
         }
     }
 

@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3A};
 
 use super::LightSample;
 use crate::{
-    math::{Frame, Rgb},
+    math::{OrthonormalBasis, Rgb},
     sampling::warp::{uniform_cone, uniform_cone_pdf},
 };
 
@@ -67,7 +67,7 @@ impl Sun {
         }
         let local = uniform_cone(u, self.one_minus_cos);
         LightSample {
-            direction: Frame::around(self.to_sun).world_from_local(local),
+            direction: OrthonormalBasis::around(self.to_sun).world_from_local(local),
             distance,
             radiance: self.radiance(),
             pdf: self.pdf_solid_angle(),

@@ -41,7 +41,7 @@ pub struct Receiver {
 #[derive(Clone, Debug, Default)]
 pub struct LightTree {
     /// The root first, children of a node side by side.
-    nodes: Vec<Node>,
+    nodes: Vec<LightNode>,
     /// For each emitter the turns from the root, the first in the lowest bit, 1 for the second
     /// child; `None` for those that are not in the tree.
     trails: Vec<Option<u64>>,
@@ -52,18 +52,18 @@ pub struct LightTree {
 }
 
 #[derive(Clone, Debug)]
-struct Node {
+struct LightNode {
     bounds: Aabb,
     /// Sum over its emitters, relative to the brightest of the tree.
     intensity: f32,
     /// Square of the distance below which the nearest emitter is not expected.
     least_squared: f32,
     cone: Cone,
-    kind: Kind,
+    kind: NodeKind,
 }
 
 #[derive(Clone, Copy, Debug)]
-enum Kind {
+enum NodeKind {
     /// One emitter, by its index.
     Leaf(u32),
     /// Index of the first child; the second follows it.
@@ -90,7 +90,7 @@ impl LightTree {
         let Some(mut node) = self.nodes.first() else { return 0.0 };
         let mut importance = node.importance(to);
         let mut passed = 0.0;
-        while let Kind::Inner(first) = node.kind
+        while let NodeKind::Inner(first) = node.kind
             && importance > 0.0
         {
             let [a, b] = &self.nodes[first as usize..][..2] else { break };
@@ -121,7 +121,7 @@ impl LightTree {
         self.node_of(index).map(|node| node.bounds.center())
     }
 
-    fn node_of(&self, index: u32) -> Option<&Node> {
+    fn node_of(&self, index: u32) -> Option<&LightNode> {
         self.trails.get(index as usize).copied().flatten()?;
         self.nodes.get(self.leaves[index as usize] as usize)
     }
@@ -131,14 +131,14 @@ impl LightTree {
     /// [0, 1), lead to near emitters.
     pub fn sample(&self, to: &Receiver, mut pick: f64) -> Option<(u32, f32)> {
         let mut node = self.nodes.first()?;
-        if let Kind::Leaf(emitter) = node.kind {
+        if let NodeKind::Leaf(emitter) = node.kind {
             return (node.importance(to) > 0.0).then_some((emitter, 1.0));
         }
         let mut probability = 1.0;
         loop {
             let first = match node.kind {
-                Kind::Leaf(emitter) => return Some((emitter, rounded(probability))),
-                Kind::Inner(first) => first as usize,
+                NodeKind::Leaf(emitter) => return Some((emitter, rounded(probability))),
+                NodeKind::Inner(first) => first as usize,
             };
             let share = self.share_of_first(first, to)?;
             if pick < share {
@@ -158,11 +158,11 @@ impl LightTree {
     pub fn probability(&self, index: u32, to: &Receiver) -> f32 {
         let Some(&Some(mut trail)) = self.trails.get(index as usize) else { return 0.0 };
         let mut node = &self.nodes[0];
-        if let Kind::Leaf(_) = node.kind {
+        if let NodeKind::Leaf(_) = node.kind {
             return if node.importance(to) > 0.0 { 1.0 } else { 0.0 };
         }
         let mut probability = 1.0;
-        while let Kind::Inner(first) = node.kind {
+        while let NodeKind::Inner(first) = node.kind {
             let first = first as usize;
             let Some(share) = self.share_of_first(first, to) else { return 0.0 };
             let second = trail & 1;
@@ -188,7 +188,7 @@ impl LightTree {
     }
 }
 
-impl Node {
+impl LightNode {
     /// Rough irradiance of its emitters at the receiver, all facing it, relative to the brightest
     /// of the tree.
     ///

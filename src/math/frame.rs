@@ -4,7 +4,7 @@ use glam::Vec3A;
 
 /// A right-handed orthonormal frame whose third axis is `normal`.
 #[derive(Clone, Copy, Debug)]
-pub struct Frame {
+pub struct OrthonormalBasis {
     /// First axis.
     pub tangent: Vec3A,
     /// Second axis.
@@ -13,7 +13,7 @@ pub struct Frame {
     pub normal: Vec3A,
 }
 
-impl Frame {
+impl OrthonormalBasis {
     /// The frame around a unit `normal`, without branches (Duff et al. 2017, *Building an
     /// Orthonormal Basis, Revisited*). For +z it is the world's own frame.
     pub fn around(normal: Vec3A) -> Self {
@@ -47,7 +47,7 @@ mod tests {
     #[test]
     fn is_orthonormal_and_right_handed() {
         for n in [Vec3A::Z, -Vec3A::Z, Vec3A::X, Vec3A::new(0.3, -0.5, -0.81).normalize()] {
-            let f = Frame::around(n);
+            let f = OrthonormalBasis::around(n);
             assert!((f.tangent.cross(f.bitangent) - n).length() < 1e-6, "{n}");
             let v = Vec3A::new(0.2, 0.7, -0.4);
             assert!((f.local_from_world(f.world_from_local(v)) - v).length() < 1e-6);

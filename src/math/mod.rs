@@ -11,7 +11,7 @@ pub mod two_float;
 
 pub use aabb::Aabb;
 pub use bvh::Bvh;
-pub use frame::Frame;
+pub use frame::OrthonormalBasis;
 pub use ray::Ray;
 pub use rng::{ACCUMULATORS, PathRng, Slot};
 

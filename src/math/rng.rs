@@ -22,8 +22,8 @@ const STRATIFIED_VERTICES: u32 = 4;
 ///
 /// | | | | |
 /// |---|---|---|---|
-/// | `PixelX`, `TurnX` | `PixelY`, `TurnY` | `Emission` | `TransmittanceA` |
-/// | `Distance` | `GuidedDistance` | `TurnPick` | `TransmittanceB` |
+/// | `PixelX`, `DirectionX` | `PixelY`, `DirectionY` | `Emission` | `TransmittanceA` |
+/// | `Distance` | `GuidedDistance` | `DirectionPick` | `TransmittanceB` |
 /// | `LightX` | `LightY` | `LightCell` | `LightPick` |
 /// | `LightEmission` | `LightTransmittanceA` | `LightZ` | `LightTransmittanceB` |
 ///
@@ -62,24 +62,24 @@ pub enum Slot {
     /// The same, a second number.
     LightTransmittanceB,
     /// Which part of a phase function or material turns the path; not at vertex 0.
-    TurnPick,
+    DirectionPick,
     /// The direction it turns to; not at vertex 0.
-    TurnX,
+    DirectionX,
     /// The same, a second number.
-    TurnY,
+    DirectionY,
 }
 
 impl Slot {
     /// The row of the table above and the place in it.
     const fn place(self) -> (u32, usize) {
         match self {
-            Self::PixelX | Self::TurnX => (0, 0),
-            Self::PixelY | Self::TurnY => (0, 1),
+            Self::PixelX | Self::DirectionX => (0, 0),
+            Self::PixelY | Self::DirectionY => (0, 1),
             Self::Emission => (0, 2),
             Self::TransmittanceA => (0, 3),
             Self::Distance => (1, 0),
             Self::GuidedDistance => (1, 1),
-            Self::TurnPick => (1, 2),
+            Self::DirectionPick => (1, 2),
             Self::TransmittanceB => (1, 3),
             Self::LightX => (2, 0),
             Self::LightY => (2, 1),
@@ -340,9 +340,9 @@ mod tests {
         Slot::LightEmission,
         Slot::LightTransmittanceA,
         Slot::LightTransmittanceB,
-        Slot::TurnPick,
-        Slot::TurnX,
-        Slot::TurnY,
+        Slot::DirectionPick,
+        Slot::DirectionX,
+        Slot::DirectionY,
     ];
 
     /// The number of a slot, at a vertex that has it.
@@ -357,7 +357,7 @@ mod tests {
         for (i, a) in SLOTS.iter().enumerate() {
             for b in &SLOTS[..i] {
                 let pixel_and_turn = matches!(b, Slot::PixelX | Slot::PixelY)
-                    && matches!(a, Slot::TurnX | Slot::TurnY);
+                    && matches!(a, Slot::DirectionX | Slot::DirectionY);
                 assert!(a.place() != b.place() || pixel_and_turn, "{a:?} and {b:?}");
             }
         }
@@ -403,8 +403,8 @@ mod tests {
             assert_eq!(plain.at(slot), stratified.at(slot));
             assert_eq!(plain.at64(slot), stratified.at64(slot));
         }
-        let drawn = plain.at(Slot::TurnX);
-        assert_ne!(drawn, plain.at(Slot::TurnX));
+        let drawn = plain.at(Slot::DirectionX);
+        assert_ne!(drawn, plain.at(Slot::DirectionX));
     }
 
     /// z of the correlation of two numbers over the first eight samples of one randomization of

@@ -8,14 +8,14 @@ use bytemuck::{Pod, Zeroable};
 /// read back goes on exactly as if it had never left memory.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
-pub struct Pair {
+pub struct TwoFloat {
     /// The sum rounded to `f32`.
     pub sum: f32,
     /// The remainder, at most half a unit in the last place of `sum`.
     pub rest: f32,
 }
 
-impl Pair {
+impl TwoFloat {
     /// Adds `x`: Knuth's two-sum for the exact rounding error, then Dekker's fast two-sum to bring
     /// the pair back to normal form.
     #[inline]
@@ -37,7 +37,7 @@ impl Pair {
 
 /// Adds a color to three sums.
 #[inline]
-pub fn add_rgb(sums: &mut [Pair; 3], rgb: crate::math::Rgb) {
+pub fn add_rgb(sums: &mut [TwoFloat; 3], rgb: crate::math::Rgb) {
     sums[0].add(rgb.x);
     sums[1].add(rgb.y);
     sums[2].add(rgb.z);
@@ -45,8 +45,8 @@ pub fn add_rgb(sums: &mut [Pair; 3], rgb: crate::math::Rgb) {
 
 /// Three sums in double precision.
 #[inline]
-pub fn values(sums: &[Pair; 3]) -> [f64; 3] {
-    sums.map(Pair::value)
+pub fn values(sums: &[TwoFloat; 3]) -> [f64; 3] {
+    sums.map(TwoFloat::value)
 }
 
 #[cfg(test)]
@@ -55,7 +55,7 @@ mod tests {
 
     #[test]
     fn a_million_tenths_keep_their_digits() {
-        let mut pair = Pair::default();
+        let mut pair = TwoFloat::default();
         let mut plain = 0.0f32;
         for _ in 0..1_000_000 {
             pair.add(0.1);
@@ -68,7 +68,7 @@ mod tests {
 
     #[test]
     fn values_of_very_different_size_survive() {
-        let mut pair = Pair::default();
+        let mut pair = TwoFloat::default();
         pair.add(1.0e8);
         for _ in 0..1000 {
             pair.add(0.01);

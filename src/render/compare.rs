@@ -20,11 +20,11 @@ pub use speed::SpeedUp;
 use super::area::Area;
 use super::film::Film;
 use super::publish::Picture;
-use tally::{Source, Tally};
+use tally::{PixelSource, Tally};
 
 /// Figures of one side. Colors are linear; gray is (R + G + B) / 3; means run over the pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Side {
+pub struct SideFigures {
     /// Mean number of samples of a pixel.
     pub samples_per_pixel: f64,
     /// Samples of the pixel that has fewest.
@@ -41,7 +41,7 @@ pub struct Side {
     pub noise: Option<f64>,
 }
 
-impl Side {
+impl SideFigures {
     /// The figures of a picture that brought its variance along, over the pixels of `area`, or all.
     /// Of its pixels it is known only how many samples each has at least; the CPU time is that of
     /// the whole picture.
@@ -87,7 +87,7 @@ impl Side {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
     /// Figures of A and of B.
-    pub sides: [Side; 2],
+    pub sides: [SideFigures; 2],
     /// How much faster B is than A; none while that is not known at all.
     pub speed_up: Option<SpeedUp>,
     /// Whether both show the same picture.
@@ -115,7 +115,11 @@ impl Comparison {
         comparison
     }
 
-    fn of_sources<S: Source>(sources: [&S; 2], cpu_seconds: [f64; 2], area: Option<Area>) -> Self {
+    fn of_sources<S: PixelSource>(
+        sources: [&S; 2],
+        cpu_seconds: [f64; 2],
+        area: Option<Area>,
+    ) -> Self {
         let area = area.unwrap_or(Area::of(sources[0].size()));
         let area = area.within(sources[0].size()).within(sources[1].size());
         let blocks = area.blocks();

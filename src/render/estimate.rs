@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::film::{Film, Sums};
 use crate::math::ACCUMULATORS;
-use crate::math::two_float::{Pair, values};
+use crate::math::two_float::{TwoFloat, values};
 
 /// What the samples of one pixel say.
 #[derive(Clone, Copy, Debug)]
@@ -31,7 +31,7 @@ impl<'a> PixelEstimate<'a> {
     }
 
     /// Mean of one of the four parts, or of any RGB sum.
-    pub fn part(&self, part: impl Fn(&Sums) -> &[Pair; 3]) -> [f64; 3] {
+    pub fn part(&self, part: impl Fn(&Sums) -> &[TwoFloat; 3]) -> [f64; 3] {
         values(part(self.sums)).map(|sum| sum / f64::from(self.samples))
     }
 

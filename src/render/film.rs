@@ -9,7 +9,7 @@ use glam::UVec2;
 
 use super::area::Area;
 use crate::error::{Error, Result};
-use crate::math::two_float::{Pair, add_rgb};
+use crate::math::two_float::{TwoFloat, add_rgb};
 use crate::math::{ACCUMULATORS, Rgb};
 use crate::transport::PathSample;
 
@@ -33,21 +33,21 @@ const MAX_PIXELS: u64 = 1 << 28;
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct Sums {
     /// The beauty, one RGB sum for each accumulator.
-    pub beauty: [[Pair; 3]; ACCUMULATORS],
+    pub beauty: [[TwoFloat; 3]; ACCUMULATORS],
     /// Volume emission seen on camera segments.
-    pub emission: [Pair; 3],
+    pub emission: [TwoFloat; 3],
     /// Environment and emitters seen directly.
-    pub background: [Pair; 3],
+    pub background: [TwoFloat; 3],
     /// Light after one scatter or reflection.
-    pub direct: [Pair; 3],
+    pub direct: [TwoFloat; 3],
     /// Light after more than one.
-    pub indirect: [Pair; 3],
+    pub indirect: [TwoFloat; 3],
     /// One minus the transmittance to the background.
-    pub alpha: Pair,
+    pub alpha: TwoFloat,
     /// Distances of the first events or surfaces.
-    pub depth: Pair,
+    pub depth: TwoFloat,
     /// Tentative collisions of all walks, those of failed samples included.
-    pub steps: Pair,
+    pub steps: TwoFloat,
     /// How many samples brought a distance.
     pub depth_count: u32,
 }

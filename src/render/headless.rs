@@ -7,13 +7,13 @@ use glam::UVec2;
 
 use super::film::Film;
 use super::pool::{Failure, Pool, Priority};
-use super::progressive::{Engine, Step};
+use super::progressive::{ProgressiveRender, RenderStep};
 use super::schedule::Limits;
 use crate::error::{Error, Result};
 use crate::transport::PixelSampler;
 
 /// What to render and for how long.
-pub struct Job {
+pub struct RenderJob {
     /// What to sample.
     pub sampler: Arc<dyn PixelSampler>,
     /// Width and height in pixels.
@@ -46,7 +46,7 @@ pub struct Headless {
 /// # Errors
 /// When the film does not fit the memory, `resume` has another size or threads cannot be started.
 pub fn render_headless(
-    job: Job,
+    job: RenderJob,
     interrupt: &AtomicBool,
     progress: &mut dyn FnMut(&Film, f64),
 ) -> Result<Headless> {
@@ -55,7 +55,7 @@ pub fn render_headless(
         None => Film::new(job.size)?,
     };
     let pool = Pool::new(job.threads, Priority::Normal)?;
-    let mut engine = Engine::new(job.sampler, film, job.limits, None);
+    let mut engine = ProgressiveRender::new(job.sampler, film, job.limits, None);
     let stop = || interrupt.load(Ordering::Relaxed);
     let mut failure = None;
     let interrupted = loop {
@@ -63,10 +63,10 @@ pub fn render_headless(
             break true;
         }
         match engine.step(&pool, false, &stop) {
-            Step::Worked => progress(engine.film(), engine.seconds()),
-            Step::Interrupted => {}
-            Step::Paused | Step::Done => break false,
-            Step::Failed(what) => {
+            RenderStep::Worked => progress(engine.film(), engine.seconds()),
+            RenderStep::Interrupted => {}
+            RenderStep::Paused | RenderStep::Done => break false,
+            RenderStep::Failed(what) => {
                 failure = Some(what);
                 break false;
             }

@@ -29,7 +29,7 @@ pub mod turns;
 pub use area::Area;
 pub use estimate::FilmStats;
 pub use film::Film;
-pub use headless::{Headless, Job, render_headless};
+pub use headless::{Headless, RenderJob, render_headless};
 pub use layers::{Layer, LayerMap};
 pub use pool::Failure;
 pub use publish::{Picture, RenderStats};

@@ -59,7 +59,7 @@ impl std::fmt::Display for Failure {
 
 /// What became of a piece of work.
 #[derive(Debug)]
-pub struct Outcome {
+pub struct WorkOutcome {
     /// Counts of what was done, all of it or not.
     pub totals: Totals,
     /// CPU time that the threads spent on it, in seconds; what threads of a sampler's own spend is
@@ -108,9 +108,9 @@ impl Pool {
         sampler: &dyn PixelSampler,
         work: &Work,
         stop: &(dyn Fn() -> bool + Sync),
-    ) -> Outcome {
+    ) -> WorkOutcome {
         let failure = Mutex::new(None);
-        let row = Row { sampler, work, size: film.size(), tiles: film.tiles(), stop };
+        let row = RowContext { sampler, work, size: film.size(), tiles: film.tiles(), stop };
         let first_row = work.tiles.start * TILE as usize;
         let (counts, sums) = film.tiles_mut(work.tiles.clone());
         let Done { totals, cpu_seconds, complete } = self.threads.install(|| {
@@ -126,7 +126,7 @@ impl Pool {
         });
         film.totals = film.totals.plus(totals);
         let failure = failure.into_inner().unwrap_or_else(PoisonError::into_inner);
-        Outcome { totals, cpu_seconds, complete: complete && failure.is_none(), failure }
+        WorkOutcome { totals, cpu_seconds, complete: complete && failure.is_none(), failure }
     }
 }
 
@@ -157,7 +157,7 @@ impl Done {
 }
 
 /// What is common to the rows of one piece of work.
-struct Row<'a> {
+struct RowContext<'a> {
     sampler: &'a dyn PixelSampler,
     work: &'a Work,
     size: UVec2,
@@ -165,7 +165,7 @@ struct Row<'a> {
     stop: &'a (dyn Fn() -> bool + Sync),
 }
 
-impl Row<'_> {
+impl RowContext<'_> {
     /// Whether pixels of the row that begins with `first` stand for a block.
     fn has_work(&self, first: UVec2, width: u32) -> bool {
         width > 0 && representative(first, self.work.stride, self.size).y == first.y

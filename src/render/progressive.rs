@@ -14,7 +14,7 @@ use super::schedule::{Limits, Next, Schedule};
 use crate::transport::PixelSampler;
 
 /// One render under way.
-pub struct Engine {
+pub struct ProgressiveRender {
     sampler: Arc<dyn PixelSampler>,
     film: Film,
     schedule: Schedule,
@@ -28,7 +28,7 @@ pub struct Engine {
 
 /// What a step came to.
 #[derive(Debug)]
-pub enum Step {
+pub enum RenderStep {
     /// A piece of work was done.
     Worked,
     /// It was broken off; the next step takes it up again.
@@ -41,7 +41,7 @@ pub enum Step {
     Failed(Failure),
 }
 
-impl Engine {
+impl ProgressiveRender {
     /// A render on `film`, which may have samples already. `seconds_per_path` is what a path cost
     /// before, if known.
     pub fn new(
@@ -91,11 +91,16 @@ impl Engine {
     }
 
     /// Does the next piece of work, unless `stop` says so earlier.
-    pub fn step(&mut self, pool: &Pool, paused: bool, stop: &(dyn Fn() -> bool + Sync)) -> Step {
+    pub fn step(
+        &mut self,
+        pool: &Pool,
+        paused: bool,
+        stop: &(dyn Fn() -> bool + Sync),
+    ) -> RenderStep {
         let work = match self.schedule.next(self.seconds, paused) {
             Next::Work(work) => work,
-            Next::Paused => return Step::Paused,
-            Next::Done => return Step::Done,
+            Next::Paused => return RenderStep::Paused,
+            Next::Done => return RenderStep::Done,
         };
         let start = Instant::now();
         let outcome = pool.sample(&mut self.film, &*self.sampler, &work, stop);
@@ -104,13 +109,13 @@ impl Engine {
         self.cpu_seconds += outcome.cpu_seconds;
         self.schedule.measured(outcome.totals.paths, seconds);
         if let Some(failure) = outcome.failure {
-            return Step::Failed(failure);
+            return RenderStep::Failed(failure);
         }
         if !outcome.complete {
-            return Step::Interrupted;
+            return RenderStep::Interrupted;
         }
         self.schedule.completed(&work);
-        Step::Worked
+        RenderStep::Worked
     }
 
     /// Whether a picture should be shown now.
@@ -211,7 +216,7 @@ mod tests {
     fn first_picture(film: Film) -> (Picture, u32) {
         let pool = Pool::new(Some(1), Priority::Normal).unwrap();
         let limits = Limits { spp: 2, seconds: None };
-        let mut engine = Engine::new(Arc::new(Uniform::default()), film, limits, None);
+        let mut engine = ProgressiveRender::new(Arc::new(Uniform::default()), film, limits, None);
         while !engine.has_picture() {
             engine.step(&pool, false, &|| false);
         }

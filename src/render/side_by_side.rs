@@ -7,8 +7,8 @@ use std::sync::atomic::AtomicBool;
 use glam::UVec2;
 
 use super::pool::{Pool, Priority};
-use super::time_slice::{Amount, Turning, take_turns};
-use super::turns::Account;
+use super::time_slice::{Amount, SideInProgress, take_turns};
+use super::turns::Usage;
 use crate::error::Result;
 use crate::transport::PixelSampler;
 
@@ -48,12 +48,13 @@ pub struct RenderedPair {
 pub fn render_side_by_side(
     job: PairJob,
     interrupt: &AtomicBool,
-    progress: &mut dyn FnMut(&[Account; 2]),
+    progress: &mut dyn FnMut(&[Usage; 2]),
 ) -> Result<RenderedPair> {
     let pool = Pool::new(job.threads, Priority::Normal)?;
     let amount = Amount { spp: job.spp, cpu_seconds: job.cpu_seconds, evenly: false };
     let [a, b] = job.samplers;
-    let mut sides = [Turning::new(a, job.size, amount)?, Turning::new(b, job.size, amount)?];
+    let mut sides =
+        [SideInProgress::new(a, job.size, amount)?, SideInProgress::new(b, job.size, amount)?];
     let interrupted = take_turns(&mut sides, &pool, interrupt, &mut |accounts| {
         if let [a, b] = accounts {
             progress(&[*a, *b]);
@@ -68,7 +69,7 @@ mod tests {
     use std::sync::atomic::Ordering;
 
     use super::*;
-    use crate::render::synthetic::{Level, Uniform};
+    use crate::render::synthetic::{GrayLevel, Uniform};
     use crate::transport::PathSample;
 
     const SIZE: UVec2 = UVec2::new(40, 30);
@@ -78,7 +79,7 @@ mod tests {
     }
 
     fn level(seed: u64) -> Arc<dyn PixelSampler> {
-        Arc::new(Level { seed, mean: 1.0, spread: 1.0 })
+        Arc::new(GrayLevel { seed, mean: 1.0, spread: 1.0 })
     }
 
     /// B costs far more; both get their samples all the same, in step.

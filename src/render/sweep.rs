@@ -17,15 +17,15 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::UVec2;
 
-pub use plan::{Idle, Kind, Source, Trial, plan};
-pub use ranking::{Entry, Gain, Ranking, Worth};
+pub use plan::{Idle, Trial, TrialKind, TrialSource, plan};
+pub use ranking::{Gain, RankedTrial, Ranking, Worth};
 
-use super::compare::Side;
+use super::compare::SideFigures;
 use super::estimate::FEWEST_FOR_VARIANCE;
 use super::film::Totals;
 use super::pool::{Failure, Pool};
-use super::time_slice::{Amount, RenderedSide, Turning, take_turns};
-use super::turns::Account;
+use super::time_slice::{Amount, RenderedSide, SideInProgress, take_turns};
+use super::turns::Usage;
 use crate::error::{Error, Result};
 use crate::transport::probes::Probes;
 use crate::transport::strategy::Strategy;
@@ -60,7 +60,7 @@ pub struct SweepJob<'a> {
 
 /// How far a sweep is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Progress {
+pub enum SweepProgress {
     /// So many strategies of all have their probes and their pilot.
     Preparing(usize, usize),
     /// This part of the samples or of the time is spent, in 0..=1.
@@ -71,7 +71,7 @@ pub enum Progress {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Tried {
     /// Noise and cost.
-    pub side: Side,
+    pub side: SideFigures,
     /// Counts of what was done.
     pub totals: Totals,
 }
@@ -89,7 +89,7 @@ pub struct Swept {
 impl Swept {
     /// Ranks the trials that it was made from.
     pub fn ranking(&self, trials: &[Trial]) -> Ranking {
-        let sides: Vec<Option<Side>> =
+        let sides: Vec<Option<SideFigures>> =
             self.tried.iter().map(|tried| tried.map(|tried| tried.side)).collect();
         Ranking::new(trials, &sides)
     }
@@ -104,19 +104,19 @@ pub fn sweep(
     job: &SweepJob<'_>,
     pool: &Pool,
     interrupt: &AtomicBool,
-    progress: &mut dyn FnMut(Progress),
+    progress: &mut dyn FnMut(SweepProgress),
 ) -> Result<Swept> {
     let frames = prepare(job, pool, interrupt, progress)?;
     let numbers: Vec<usize> = frames.iter().map(|(number, _)| *number).collect();
     let begin = |(_, frame): (usize, Frame)| {
         let sampler: Arc<dyn PixelSampler> = Arc::new(frame);
-        Turning::new(sampler, job.size, job.amount)
+        SideInProgress::new(sampler, job.size, job.amount)
     };
     let mut sides = frames.into_iter().map(begin).collect::<Result<Vec<_>>>()?;
     let interrupted = take_turns(&mut sides, pool, interrupt, &mut |accounts| {
-        let part = |account: &Account| job.amount.part(account);
+        let part = |account: &Usage| job.amount.part(account);
         let sum: f64 = accounts.iter().map(part).sum();
-        progress(Progress::Rendering(sum / accounts.len() as f64));
+        progress(SweepProgress::Rendering(sum / accounts.len() as f64));
     });
     let mut swept = Swept { tried: vec![None; job.trials.len()], interrupted, failure: None };
     for (number, side) in std::iter::zip(numbers, sides) {
@@ -130,10 +130,10 @@ pub fn sweep(
 
 /// Noise and cost of a strategy; no noise where some pixels have none yet, as those that do are no
 /// fair part of the picture.
-fn measured(rendered: &RenderedSide) -> Side {
-    let side = Side::of(&rendered.film, rendered.cpu_seconds);
+fn measured(rendered: &RenderedSide) -> SideFigures {
+    let side = SideFigures::of(&rendered.film, rendered.cpu_seconds);
     match side.fewest_samples < FEWEST_FOR_VARIANCE {
-        true => Side { variance_of_mean: None, variance_error: None, noise: None, ..side },
+        true => SideFigures { variance_of_mean: None, variance_error: None, noise: None, ..side },
         false => side,
     }
 }
@@ -144,16 +144,16 @@ fn prepare(
     job: &SweepJob<'_>,
     pool: &Pool,
     interrupt: &AtomicBool,
-    progress: &mut dyn FnMut(Progress),
+    progress: &mut dyn FnMut(SweepProgress),
 ) -> Result<Vec<(usize, Frame)>> {
     let stop = || interrupt.load(Ordering::Relaxed);
-    let is_rendered = |(_, trial): &(usize, &Trial)| trial.source == Source::Rendered;
+    let is_rendered = |(_, trial): &(usize, &Trial)| trial.source == TrialSource::Rendered;
     let rendered: Vec<(usize, &Trial)> =
         job.trials.iter().enumerate().filter(is_rendered).collect();
     let mut known: Vec<(Strategy, Arc<Probes>)> = Vec::new();
     let mut frames = Vec::with_capacity(rendered.len());
     for (done, (number, trial)) in rendered.iter().enumerate() {
-        progress(Progress::Preparing(done, rendered.len()));
+        progress(SweepProgress::Preparing(done, rendered.len()));
         let scene = Scene { strategy: trial.strategy, ..job.scene.clone() };
         let probes = pool.install(|| probes(&scene, &mut known, &stop));
         if stop() {

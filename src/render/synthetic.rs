@@ -56,13 +56,13 @@ impl PixelSampler for Uniform {
 
 /// Gray values of a known mean and variance: uniform on `mean` ± `spread` / 2, so of variance
 /// `spread`² / 12.
-pub(crate) struct Level {
+pub(crate) struct GrayLevel {
     pub seed: u64,
     pub mean: f32,
     pub spread: f32,
 }
 
-impl PixelSampler for Level {
+impl PixelSampler for GrayLevel {
     fn sample(&self, pixel: UVec2, sample: u32) -> PathSample {
         gray(self.mean + self.spread * (uniform(self.seed, pixel, sample) - 0.5))
     }

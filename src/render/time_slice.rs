@@ -10,9 +10,9 @@ use super::compare::NoiseHistory;
 use super::estimate::{FEWEST_FOR_VARIANCE, FilmStats, samples_per_pixel};
 use super::film::Film;
 use super::pool::{Failure, Pool};
-use super::progressive::{Engine, Step};
+use super::progressive::{ProgressiveRender, RenderStep};
 use super::schedule::Limits;
-use super::turns::{self, Account, Share};
+use super::turns::{self, Share, Usage};
 use crate::error::Result;
 use crate::transport::PixelSampler;
 
@@ -46,7 +46,7 @@ pub struct Amount {
 
 impl Amount {
     /// How much of it a side has had, in 0..=1; 0 where there is no limit.
-    pub fn part(&self, account: &Account) -> f64 {
+    pub fn part(&self, account: &Usage) -> f64 {
         let by_samples = if self.spp > 0 { account.samples / f64::from(self.spp) } else { 0.0 };
         let by_time = self.cpu_seconds.map_or(0.0, |end| account.cpu_seconds / end);
         by_samples.max(by_time).min(1.0)
@@ -61,15 +61,15 @@ impl Amount {
 /// `progress` after every piece of work (a few times a second). A sample that cannot be taken ends
 /// all of them. Whether the interrupt did.
 pub(super) fn take_turns(
-    sides: &mut [Turning],
+    sides: &mut [SideInProgress],
     pool: &Pool,
     interrupt: &AtomicBool,
-    progress: &mut dyn FnMut(&[Account]),
+    progress: &mut dyn FnMut(&[Usage]),
 ) -> bool {
     let by_time = sides.iter().any(|side| side.amount.cpu_seconds.is_some());
     let share = if by_time { Share::CpuTime } else { Share::Samples };
     let stop = || interrupt.load(Ordering::Relaxed);
-    let mut accounts = vec![Account::default(); sides.len()];
+    let mut accounts = vec![Usage::default(); sides.len()];
     while let Some(next) = turns::next(&accounts, share) {
         if stop() {
             return true;
@@ -86,21 +86,21 @@ pub(super) fn take_turns(
 }
 
 /// A side under way.
-pub(super) struct Turning {
-    engine: Engine,
+pub(super) struct SideInProgress {
+    engine: ProgressiveRender,
     amount: Amount,
     history: NoiseHistory,
     closed: bool,
     failure: Option<Failure>,
 }
 
-impl Turning {
+impl SideInProgress {
     /// A side that has had nothing yet.
     ///
     /// # Errors
     /// When its film does not fit the memory.
     pub fn new(sampler: Arc<dyn PixelSampler>, size: UVec2, amount: Amount) -> Result<Self> {
-        let engine = Engine::new(sampler, Film::new(size)?, amount.limits(), None);
+        let engine = ProgressiveRender::new(sampler, Film::new(size)?, amount.limits(), None);
         let history = NoiseHistory::default();
         Ok(Self { engine, amount, history, closed: false, failure: None })
     }
@@ -112,9 +112,9 @@ impl Turning {
             self.engine.set_limits(self.limits(left, pool.threads()));
         }
         match self.engine.step(pool, false, stop) {
-            Step::Worked | Step::Interrupted => {}
-            Step::Paused | Step::Done => self.closed = true,
-            Step::Failed(failure) => (self.closed, self.failure) = (true, Some(failure)),
+            RenderStep::Worked | RenderStep::Interrupted => {}
+            RenderStep::Paused | RenderStep::Done => self.closed = true,
+            RenderStep::Failed(failure) => (self.closed, self.failure) = (true, Some(failure)),
         }
         let is_over = |all: f64| self.engine.cpu_seconds() >= all;
         self.closed |= self.amount.cpu_seconds.is_some_and(is_over) && !self.is_uneven();
@@ -154,8 +154,8 @@ impl Turning {
         }
     }
 
-    fn account(&self) -> Account {
-        Account {
+    fn account(&self) -> Usage {
+        Usage {
             cpu_seconds: self.engine.cpu_seconds(),
             samples: samples_per_pixel(self.engine.film()),
             closed: self.closed,

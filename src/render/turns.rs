@@ -5,7 +5,7 @@
 
 /// What one side has had so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Account {
+pub struct Usage {
     /// CPU time of the sampling threads, in seconds.
     pub cpu_seconds: f64,
     /// Mean number of samples of a pixel.
@@ -24,7 +24,7 @@ pub enum Share {
     Samples,
 }
 
-impl Account {
+impl Usage {
     fn had(&self, share: Share) -> f64 {
         match share {
             Share::CpuTime => self.cpu_seconds,
@@ -35,7 +35,7 @@ impl Account {
 
 /// The side whose turn it is: of those not closed the one that has had least, of several the first.
 /// `None` when all are closed.
-pub fn next(accounts: &[Account], share: Share) -> Option<usize> {
+pub fn next(accounts: &[Usage], share: Share) -> Option<usize> {
     let open = accounts.iter().enumerate().filter(|(_, account)| !account.closed);
     open.min_by(|(_, a), (_, b)| a.had(share).total_cmp(&b.had(share))).map(|(side, _)| side)
 }
@@ -45,8 +45,8 @@ mod tests {
     use super::*;
 
     /// Gives out turns of `pieces` (seconds, samples) a side until `turns` are over.
-    fn play(pieces: [(f64, f64); 2], share: Share, turns: usize) -> [Account; 2] {
-        let mut accounts = [Account::default(); 2];
+    fn play(pieces: [(f64, f64); 2], share: Share, turns: usize) -> [Usage; 2] {
+        let mut accounts = [Usage::default(); 2];
         for _ in 0..turns {
             let side = next(&accounts, share).unwrap();
             accounts[side].cpu_seconds += pieces[side].0;
@@ -70,7 +70,7 @@ mod tests {
     #[test]
     fn many_sides_stay_within_the_longest_piece_of_each_other() {
         let pieces = [0.02, 0.31, 0.07, 0.11, 0.05, 0.19, 0.03, 0.23, 0.13, 0.017, 0.29, 0.041];
-        let mut accounts = [Account::default(); 12];
+        let mut accounts = [Usage::default(); 12];
         for _ in 0..2000 {
             let side = next(&accounts, Share::CpuTime).unwrap();
             accounts[side].cpu_seconds += pieces[side];
@@ -85,7 +85,7 @@ mod tests {
 
     #[test]
     fn the_first_begins_and_equal_sides_alternate() {
-        let mut accounts = [Account::default(); 2];
+        let mut accounts = [Usage::default(); 2];
         let mut order = Vec::new();
         for _ in 0..6 {
             let side = next(&accounts, Share::Samples).unwrap();
@@ -97,8 +97,8 @@ mod tests {
 
     #[test]
     fn closed_sides_get_no_turn() {
-        let open = Account { cpu_seconds: 9.0, samples: 9.0, closed: false };
-        let closed = Account { closed: true, ..Account::default() };
+        let open = Usage { cpu_seconds: 9.0, samples: 9.0, closed: false };
+        let closed = Usage { closed: true, ..Usage::default() };
         assert_eq!(next(&[closed, open], Share::CpuTime), Some(1));
         assert_eq!(next(&[closed, closed], Share::CpuTime), None);
         assert_eq!(next(&[], Share::Samples), None);

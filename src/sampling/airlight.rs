@@ -5,7 +5,7 @@ use std::f32::consts::{PI, TAU};
 use glam::{Vec2, Vec3A};
 
 use super::warp::spherical;
-use crate::math::Frame;
+use crate::math::OrthonormalBasis;
 
 /// A density over directions that peaks towards a light.
 ///
@@ -13,8 +13,8 @@ use crate::math::Frame;
 /// ∝ (1/sin θ) ∫_θ^π ρ(φ) dφ (the airlight integral, Sun et al. 2005, T left out). The integral is
 /// flat up to about 1 − g and falls as θ⁻² from there, for which a Cauchy density of θ stands.
 #[derive(Clone, Copy, Debug)]
-pub struct Halo {
-    axis: Frame,
+pub struct Airlight {
+    axis: OrthonormalBasis,
     /// Half width of the density of θ.
     spread: f32,
     /// atan(π / spread).
@@ -26,14 +26,14 @@ const LEAST_SPREAD: f32 = 0.02;
 /// Least sine of the angle that densities are formed with.
 const LEAST_SINE: f32 = 1e-6;
 
-impl Halo {
+impl Airlight {
     /// About the unit `axis` in a medium of mean cosine `g`.
     pub fn new(axis: Vec3A, g: f32) -> Self {
         let spread = (1.0 - g.abs()).max(LEAST_SPREAD);
-        Self { axis: Frame::around(axis), spread, reach: (PI / spread).atan() }
+        Self { axis: OrthonormalBasis::around(axis), spread, reach: (PI / spread).atan() }
     }
 
-    /// A unit direction with density [`Halo::pdf`], from `u` in [0, 1)².
+    /// A unit direction with density [`Airlight::pdf`], from `u` in [0, 1)².
     pub fn sample(&self, u: Vec2) -> Vec3A {
         let theta = self.spread * (u.x * self.reach).tan();
         let (sin, cos) = theta.min(PI).sin_cos();
@@ -59,20 +59,20 @@ mod tests {
     #[test]
     fn samples_follow_the_density() {
         let axis = Vec3A::new(1.0, -2.0, 0.5).normalize();
-        let frame = Frame::around(axis);
+        let frame = OrthonormalBasis::around(axis);
         for g in [-0.7, 0.0, 0.6, 0.95] {
-            let halo = Halo::new(axis, g);
+            let airlight = Airlight::new(axis, g);
             let (n, mut integral) = (40_000, 0.0_f64);
             for i in 0..n {
                 let theta = PI * (i as f32 + 0.5) / n as f32;
                 let direction = frame.world_from_local(Vec3A::new(theta.sin(), 0.0, theta.cos()));
                 let band = TAU * theta.sin() * PI / n as f32;
-                integral += f64::from(halo.pdf(direction) * band);
+                integral += f64::from(airlight.pdf(direction) * band);
                 if i % 8000 == 4000 {
                     let inside = (0..2000)
                         .filter(|k| {
                             let u = Vec2::new((*k as f32 + 0.5) / 2000.0, 0.37);
-                            halo.sample(u).dot(axis) > theta.cos()
+                            airlight.sample(u).dot(axis) > theta.cos()
                         })
                         .count();
                     let share = inside as f64 / 2000.0;
@@ -85,12 +85,12 @@ mod tests {
 
     #[test]
     fn directions_are_unit_vectors_all_around() {
-        let halo = Halo::new(Vec3A::Z, 0.3);
+        let airlight = Airlight::new(Vec3A::Z, 0.3);
         let mut sum = Vec3A::ZERO;
         for i in 0..1000 {
             let u = Vec2::new(0.999, i as f32 / 1000.0);
-            let direction = halo.sample(u);
-            assert!((direction.length() - 1.0).abs() < 1e-5 && halo.pdf(direction) > 0.0);
+            let direction = airlight.sample(u);
+            assert!((direction.length() - 1.0).abs() < 1e-5 && airlight.pdf(direction) > 0.0);
             sum += direction;
         }
         assert!(sum.truncate().length() < 1.0);

@@ -3,31 +3,31 @@
 use glam::{Vec2, Vec3A};
 use smallvec::SmallVec;
 
-use super::airlight::Halo;
-use super::von_mises_fisher::Fisher;
+use super::airlight::Airlight;
+use super::von_mises_fisher::VonMisesFisher;
 
 /// Kinds that need no memory of their own.
 const FEW: usize = 5;
 
 /// One kind of directions.
 #[derive(Clone, Copy, Debug)]
-pub enum Lobe {
+pub enum GuidingLobe {
     /// The glow about a light.
-    Halo(Halo),
+    Airlight(Airlight),
     /// A bundle of light.
-    Bundle(Fisher),
+    Caustic(VonMisesFisher),
 }
 
 /// Kinds of directions, each with the share of all directions that it is drawn with. What the
 /// shares leave of one is drawn otherwise.
 #[derive(Clone, Debug, Default)]
-pub struct Towards {
-    lobes: SmallVec<[(f32, Lobe); FEW]>,
+pub struct GuidingMixture {
+    lobes: SmallVec<[(f32, GuidingLobe); FEW]>,
 }
 
-impl Towards {
+impl GuidingMixture {
     /// Adds a kind with a share of all directions.
-    pub fn add(&mut self, share: f32, lobe: Lobe) {
+    pub fn add(&mut self, share: f32, lobe: GuidingLobe) {
         if share > 0.0 {
             self.lobes.push((share, lobe));
         }
@@ -48,17 +48,17 @@ impl Towards {
         });
         let (_, lobe) = chosen.or(self.lobes.last())?;
         Some(match lobe {
-            Lobe::Halo(halo) => halo.sample(u),
-            Lobe::Bundle(bundle) => bundle.sample(u),
+            GuidingLobe::Airlight(airlight) => airlight.sample(u),
+            GuidingLobe::Caustic(caustic) => caustic.sample(u),
         })
     }
 
     /// Density over solid angle of a unit direction, which integrates to the sum of the shares.
     pub fn pdf_times_share(&self, direction: Vec3A) -> f32 {
-        let of = |(share, lobe): &(f32, Lobe)| {
+        let of = |(share, lobe): &(f32, GuidingLobe)| {
             let pdf = match lobe {
-                Lobe::Halo(halo) => halo.pdf(direction),
-                Lobe::Bundle(bundle) => bundle.pdf(direction),
+                GuidingLobe::Airlight(airlight) => airlight.pdf(direction),
+                GuidingLobe::Caustic(caustic) => caustic.pdf(direction),
             };
             share * pdf
         };

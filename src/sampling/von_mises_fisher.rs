@@ -5,23 +5,23 @@ use std::f32::consts::TAU;
 use glam::{Vec2, Vec3A};
 
 use super::warp::about_axis;
-use crate::math::Frame;
+use crate::math::OrthonormalBasis;
 
 /// The density κ/(2π (1 − e^−2κ)) exp(−κ (1 − cos θ)) about an axis (Fisher 1953).
 #[derive(Clone, Copy, Debug)]
-pub struct Fisher {
-    axis: Frame,
+pub struct VonMisesFisher {
+    axis: OrthonormalBasis,
     concentration: f32,
 }
 
-impl Fisher {
+impl VonMisesFisher {
     /// About the unit `axis`, with `concentration` κ > 0: the mean of 1 − cos θ is about 1/κ where
     /// that is small.
     pub fn new(axis: Vec3A, concentration: f32) -> Self {
-        Self { axis: Frame::around(axis), concentration }
+        Self { axis: OrthonormalBasis::around(axis), concentration }
     }
 
-    /// A unit direction with density [`Fisher::pdf`], from `u` in [0, 1)².
+    /// A unit direction with density [`VonMisesFisher::pdf`], from `u` in [0, 1)².
     pub fn sample(&self, u: Vec2) -> Vec3A {
         let kept = u.x * (-2.0 * self.concentration).exp_m1();
         let one_minus_cos = (-kept.ln_1p() / self.concentration).min(2.0);
@@ -47,9 +47,9 @@ mod tests {
     #[test]
     fn samples_follow_the_density() {
         let axis = Vec3A::new(-1.0, 0.3, -2.0).normalize();
-        let frame = Frame::around(axis);
+        let frame = OrthonormalBasis::around(axis);
         for concentration in [0.1, 2.0, 50.0, 1e4] {
-            let fisher = Fisher::new(axis, concentration);
+            let fisher = VonMisesFisher::new(axis, concentration);
             let reach = (20.0 / concentration).sqrt().min(PI);
             let (n, mut integral) = (40_000, 0.0_f64);
             for i in 0..n {

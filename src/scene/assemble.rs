@@ -16,7 +16,7 @@ use crate::{
 };
 
 pub(crate) use placement::world_from_file;
-use surfaces::Built;
+use surfaces::LightOrSurface;
 
 /// Builds what the settings describe. Files and what was derived from them stay in `cache`, so
 /// that a scene of which only numbers have changed is built in a few milliseconds.
@@ -29,8 +29,8 @@ pub fn assemble(settings: &Settings, cache: &VolumeCache, progress: Progress) ->
     let mut lights = Vec::new();
     for light in &settings.light {
         match surfaces::light(light) {
-            Built::Light(light) => lights.push(light),
-            Built::Surface(surface) => surfaces.push(surface),
+            LightOrSurface::Light(light) => lights.push(light),
+            LightOrSurface::Surface(surface) => surfaces.push(surface),
         }
     }
     let instances = volumes::instances(&settings.volume, cache, progress)?;

@@ -5,7 +5,7 @@ use serde_json::Value as Schema;
 use toml::{Table, Value};
 
 use super::keys::{self, join};
-use super::schema::{self, Bounds, Only};
+use super::schema::{self, NumberBounds, Only};
 use crate::error::{Error, Result};
 
 /// Checks a whole scene; `source` names it in errors.
@@ -47,7 +47,7 @@ impl Checker<'_> {
             let Some(key_schema) = properties.get(key) else {
                 return Err(self.unknown_key(&path, key, properties.keys()));
             };
-            self.value(value, key_schema, &path, Bounds::default())?;
+            self.value(value, key_schema, &path, NumberBounds::default())?;
             if let Some((only, actual)) = broken_condition(key_schema, table, schema) {
                 let has = match actual {
                     Some(actual) => format!("here {} = \"{actual}\"", only.key),
@@ -94,8 +94,8 @@ impl Checker<'_> {
         self.invalid(path, format!("unknown key; the nearest known key is {nearest}"))
     }
 
-    fn value(&self, value: &Value, schema: &Schema, path: &str, outer: Bounds) -> Result<()> {
-        let bounds = outer.or(Bounds::of(schema));
+    fn value(&self, value: &Value, schema: &Schema, path: &str, outer: NumberBounds) -> Result<()> {
+        let bounds = outer.or(NumberBounds::of(schema));
         if schema::list_item(schema).is_some() && !value.is_array() {
             let reason = format!("expected a list of tables; write [[{path}]]");
             return Err(self.invalid(path, reason));
@@ -104,7 +104,7 @@ impl Checker<'_> {
         let Some(&chosen) = alternatives.iter().find(|one| fits(value, one)) else {
             return Err(self.wrong_type(value, schema, path));
         };
-        let bounds = bounds.or(Bounds::of(chosen));
+        let bounds = bounds.or(NumberBounds::of(chosen));
         match value {
             Value::Integer(number) => self.integer(*number, path, bounds),
             Value::Float(number) => self.float(*number, path, bounds),
@@ -125,11 +125,11 @@ impl Checker<'_> {
         self.invalid(path, format!("expected {}, found {found}", schema::label(schema)))
     }
 
-    fn integer(&self, number: i64, path: &str, bounds: Bounds) -> Result<()> {
+    fn integer(&self, number: i64, path: &str, bounds: NumberBounds) -> Result<()> {
         self.within(bounds.contain_integer(number), number, path, bounds)
     }
 
-    fn float(&self, number: f64, path: &str, bounds: Bounds) -> Result<()> {
+    fn float(&self, number: f64, path: &str, bounds: NumberBounds) -> Result<()> {
         let held = number as f32;
         if !held.is_finite() {
             return Err(self.invalid(path, format!("{number} is not a finite number")));
@@ -142,7 +142,7 @@ impl Checker<'_> {
         is_within: bool,
         number: impl std::fmt::Display,
         path: &str,
-        bounds: Bounds,
+        bounds: NumberBounds,
     ) -> Result<()> {
         match bounds.words() {
             Some(words) if !is_within => {
@@ -171,7 +171,7 @@ impl Checker<'_> {
         chosen: &Schema,
         whole: &Schema,
         path: &str,
-        bounds: Bounds,
+        bounds: NumberBounds,
     ) -> Result<()> {
         let count = chosen.get("minItems").and_then(Schema::as_u64);
         if count.is_some_and(|count| count != items.len() as u64) {

@@ -110,8 +110,8 @@ pub fn emits(volume: &VolumeSettings) -> bool {
         }
         EmissionMode::Blackbody => emission.intensity() > 0.0 && emission.kelvin_scale() > 0.0,
         EmissionMode::Ramp => {
-            let glows = |stop: &[f32; 4]| stop[1..].iter().any(|&value| value > 0.0);
-            emission.intensity() > 0.0 && emission.stops().iter().any(glows)
+            let emits = |stop: &[f32; 4]| stop[1..].iter().any(|&value| value > 0.0);
+            emission.intensity() > 0.0 && emission.stops().iter().any(emits)
         }
     }
 }

@@ -65,7 +65,7 @@ impl std::fmt::Display for Note {
 }
 
 /// How a volume should look.
-struct Look {
+struct Appearance {
     /// Words in the file's name that ask for it.
     words: &'static [&'static str],
     /// The optical depth of a fairly thick line of sight.
@@ -77,16 +77,16 @@ struct Look {
 }
 
 /// Looks that the name of a file asks for.
-const NAMED_LOOKS: &[Look] = &[
-    Look { words: &["cloud", "cumulus", "wdas"], depth: 25.0, albedo: 0.99, radiance: 1.0 },
-    Look { words: &["fog", "mist", "haze"], depth: 1.5, albedo: 0.95, radiance: 1.0 },
+const NAMED_LOOKS: &[Appearance] = &[
+    Appearance { words: &["cloud", "cumulus", "wdas"], depth: 25.0, albedo: 0.99, radiance: 1.0 },
+    Appearance { words: &["fog", "mist", "haze"], depth: 1.5, albedo: 0.95, radiance: 1.0 },
 ];
 /// Smoke without fire.
-const SMOKE: Look = Look { words: &[], depth: 6.0, albedo: 0.9, radiance: 1.0 };
+const SMOKE: Appearance = Appearance { words: &[], depth: 6.0, albedo: 0.9, radiance: 1.0 };
 /// Smoke that is wrapped around a fire.
-const FIRE_SMOKE: Look = Look { words: &[], depth: 4.0, albedo: 0.5, radiance: 2.5 };
+const FIRE_SMOKE: Appearance = Appearance { words: &[], depth: 4.0, albedo: 0.5, radiance: 2.5 };
 /// The thin soot inside a fire, which must not hide it.
-const SOOT: Look = Look { words: &[], depth: 0.4, albedo: 0.3, radiance: 0.9 };
+const SOOT: Appearance = Appearance { words: &[], depth: 0.4, albedo: 0.3, radiance: 0.9 };
 /// A density that is nowhere above this is soot, if there is fire.
 const SOOT_BELOW: f32 = 0.3;
 /// The lines of sight that count as fairly thick and fairly bright.
@@ -197,9 +197,9 @@ fn stands_on_y(bounds: &Aabb) -> bool {
     stands_on(1, 0.08) && !stands_on(2, 0.2) && bounds.center().z.abs() < 0.1 * size
 }
 
-fn look_of(name: &str, density: Option<&Candidate>, is_fire: bool) -> &'static Look {
+fn look_of(name: &str, density: Option<&Candidate>, is_fire: bool) -> &'static Appearance {
     let name = name.to_ascii_lowercase();
-    let is_named = |look: &&Look| look.words.iter().any(|word| name.contains(word));
+    let is_named = |look: &&Appearance| look.words.iter().any(|word| name.contains(word));
     match density {
         Some(density) if is_fire && density.max < SOOT_BELOW => &SOOT,
         _ if is_fire => &FIRE_SMOKE,

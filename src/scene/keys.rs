@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use serde::Serialize;
 use serde_json::Value;
 
-use super::schema::{self, Bounds};
+use super::schema::{self, NumberBounds};
 
 /// One key, as `flambeau keys` prints it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -102,8 +102,8 @@ fn collect(table: &Value, path: &str, keys: &mut Vec<Key>) {
 fn describe(path: String, schema: &Value) -> Key {
     let text = |key: &str| schema.get(key).and_then(Value::as_str).map(str::to_owned);
     let conditions: Vec<String> = schema::only(schema).iter().map(ToString::to_string).collect();
-    let items = schema.get("items").map(Bounds::of).unwrap_or_default();
-    let bounds = Bounds::of(schema).or(items);
+    let items = schema.get("items").map(NumberBounds::of).unwrap_or_default();
+    let bounds = NumberBounds::of(schema).or(items);
     Key {
         path,
         kind: schema::label(schema),

@@ -40,7 +40,7 @@ pub use guess::{About, Note};
 pub use load::{Opened, is_scene, load, open};
 pub use overrides::Overrides;
 pub use parse::{apply, parse, tidy, validate};
-pub use resume::{Kinship, Obstacle, kinship, settings_of};
+pub use resume::{Blocker, Compatibility, compatibility, settings_of};
 pub use role::Role;
 pub use save::{save, to_toml};
 pub use settings::Settings;

@@ -5,31 +5,31 @@ use std::path::Path;
 use super::{Overrides, Settings, parse, to_toml};
 use crate::error::Result;
 use crate::files::Fingerprint;
-use crate::image::exr::Header;
+use crate::image::exr::SnapshotHeader;
 
 /// Why new samples may not join those of a snapshot.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Obstacle {
+pub struct Blocker {
     /// What is not as it was.
     pub what: String,
     /// What to do about it.
-    pub mend: &'static str,
+    pub fix: &'static str,
 }
 
 /// How a snapshot stands to a scene.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Kinship {
+pub struct Compatibility {
     /// What keeps it from being continued, if anything does.
-    pub obstacle: Option<Obstacle>,
+    pub blocker: Option<Blocker>,
     /// What could not be made sure of, one sentence each.
-    pub doubts: Vec<String>,
+    pub warnings: Vec<String>,
 }
 
 /// The settings that the snapshot `name` was rendered with.
 ///
 /// # Errors
 /// Its header holds no scene of this version; names the key and the mend.
-pub fn settings_of(header: &Header, name: &str) -> Result<Settings> {
+pub fn settings_of(header: &SnapshotHeader, name: &str) -> Result<Settings> {
     parse(&header.scene, name, Path::new("/"), &Overrides::default())
 }
 
@@ -38,22 +38,22 @@ pub fn settings_of(header: &Header, name: &str) -> Result<Settings> {
 ///
 /// # Errors
 /// As [`settings_of`].
-pub fn kinship(
-    header: &Header,
+pub fn compatibility(
+    header: &SnapshotHeader,
     name: &str,
     settings: &Settings,
     files: &[Fingerprint],
-) -> Result<Kinship> {
-    let mut doubts = Vec::new();
-    let mut obstacle = difference(&settings_of(header, name)?, settings)?.map(|difference| {
+) -> Result<Compatibility> {
+    let mut warnings = Vec::new();
+    let mut blocker = difference(&settings_of(header, name)?, settings)?.map(|difference| {
         let what =
             format!("the snapshot was rendered with other settings than this scene: {difference}");
-        Obstacle { what, mend: "Render anew, or give the settings it has" }
+        Blocker { what, fix: "Render anew, or give the settings it has" }
     });
     for file in files {
         match header.files.iter().find(|then| then.name == file.name) {
-            Some(then) => obstacle = obstacle.or_else(|| change(then, file)),
-            None => doubts.push(format!(
+            Some(then) => blocker = blocker.or_else(|| change(then, file)),
+            None => warnings.push(format!(
                 "{name} does not say what {} held when it was rendered; if that has changed since, \
                  two pictures are being mixed",
                 file.name
@@ -61,16 +61,16 @@ pub fn kinship(
         }
     }
     if header.version != env!("CARGO_PKG_VERSION") {
-        doubts.push(format!(
+        warnings.push(format!(
             "{name} was begun with version {}; its samples and those of this version may differ",
             header.version
         ));
     }
-    Ok(Kinship { obstacle, doubts })
+    Ok(Compatibility { blocker, warnings })
 }
 
 /// What has become of a file.
-fn change(then: &Fingerprint, now: &Fingerprint) -> Option<Obstacle> {
+fn change(then: &Fingerprint, now: &Fingerprint) -> Option<Blocker> {
     if then == now {
         return None;
     }
@@ -78,9 +78,9 @@ fn change(then: &Fingerprint, now: &Fingerprint) -> Option<Obstacle> {
         true => "has other content".to_owned(),
         false => format!("had {} bytes and now has {}", then.bytes, now.bytes),
     };
-    Some(Obstacle {
+    Some(Blocker {
         what: format!("{} {change} since the snapshot was rendered", now.name),
-        mend: "Going on would mix two pictures: render anew, or put the old file back",
+        fix: "Going on would mix two pictures: render anew, or put the old file back",
     })
 }
 

@@ -100,8 +100,8 @@ fn placement(volume: &VolumeSettings) -> Result<(), Fault> {
 
 /// Without extinction a glow that fills space adds up to infinity.
 fn everywhere(volume: &VolumeSettings) -> Result<(), Fault> {
-    let glows = !matches!(volume.emission.mode, EmissionMode::None | EmissionMode::Source);
-    if glows && volume.density.scale.rgb().min_element() <= 0.0 {
+    let emits = !matches!(volume.emission.mode, EmissionMode::None | EmissionMode::Source);
+    if emits && volume.density.scale.rgb().min_element() <= 0.0 {
         let reason = "a volume without borders that glows must have a density above 0 in every \
                       channel, else it is infinitely bright";
         return fault("density.scale", reason);

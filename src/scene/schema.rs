@@ -112,14 +112,14 @@ fn plain_label(schema: &Value) -> String {
 
 /// The bounds of every number in a value.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Bounds {
+pub(super) struct NumberBounds {
     min: Option<f64>,
     above: Option<f64>,
     max: Option<f64>,
     nonzero: bool,
 }
 
-impl Bounds {
+impl NumberBounds {
     /// The bounds that the schema states for itself and for what it holds when it is there.
     pub(super) fn of(schema: &Value) -> Self {
         let number = |key: &str| schema.get(key).and_then(Value::as_f64);

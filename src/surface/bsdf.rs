@@ -5,7 +5,7 @@ use std::f32::consts::{FRAC_1_PI, PI};
 use glam::{Vec2, Vec3A};
 
 use crate::{
-    math::{Frame, Rgb},
+    math::{OrthonormalBasis, Rgb},
     sampling::warp::{cosine_hemisphere, cosine_hemisphere_pdf, uniform_disk},
 };
 
@@ -33,7 +33,7 @@ pub enum Material {
 #[derive(Clone, Copy, Debug)]
 pub struct Bsdf {
     material: Material,
-    frame: Frame,
+    frame: OrthonormalBasis,
     /// The direction towards the viewer in the frame, above the horizon.
     outgoing: Vec3A,
 }
@@ -43,7 +43,7 @@ impl Bsdf {
     /// either side.
     pub fn new(material: Material, normal: Vec3A, outgoing: Vec3A) -> Self {
         let facing = if normal.dot(outgoing) < 0.0 { -normal } else { normal };
-        let frame = Frame::around(facing);
+        let frame = OrthonormalBasis::around(facing);
         Self { material, frame, outgoing: frame.local_from_world(outgoing) }
     }
 
@@ -117,7 +117,7 @@ fn lambda(alpha: f32, v: Vec3A) -> f32 {
 /// of Visible Normals*).
 fn sample_visible_normal(alpha: f32, outgoing: Vec3A, u: Vec2) -> Vec3A {
     let stretched = Vec3A::new(alpha * outgoing.x, alpha * outgoing.y, outgoing.z).normalize();
-    let frame = Frame::around(stretched);
+    let frame = OrthonormalBasis::around(stretched);
     let disk = uniform_disk(u);
     // The lower half of the disk is squeezed to where the hemisphere is visible.
     let s = 0.5 * (1.0 + stretched.z);
@@ -129,7 +129,7 @@ fn sample_visible_normal(alpha: f32, outgoing: Vec3A, u: Vec2) -> Vec3A {
 
 /// Maps a disk sample onto the visible part of the hemisphere around the frame's normal. The axis
 /// to squeeze along is the frame's direction that leans towards the surface normal.
-fn project_visible(frame: &Frame, disk: Vec2, s: f32) -> (f32, f32) {
+fn project_visible(frame: &OrthonormalBasis, disk: Vec2, s: f32) -> (f32, f32) {
     let up = Vec2::new(frame.tangent.z, frame.bitangent.z).normalize_or(Vec2::Y);
     let across = Vec2::new(-up.y, up.x);
     let (a, b) = (disk.dot(across), disk.dot(up));

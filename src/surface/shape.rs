@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3A};
 
 use super::{Quad, Sphere};
 use crate::{
-    math::{Aabb, Frame, Ray},
+    math::{Aabb, OrthonormalBasis, Ray},
     sampling::warp::uniform_sphere,
 };
 
@@ -65,7 +65,7 @@ impl Shape {
         match half_size {
             None => Self::Plane { point, normal },
             Some(half) => {
-                let frame = Frame::around(normal);
+                let frame = OrthonormalBasis::around(normal);
                 Self::Quad(Quad::new(point, half * frame.tangent, half * frame.bitangent))
             }
         }

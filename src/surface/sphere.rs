@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3A};
 
 use super::{Hit, SurfacePoint, shape::pdf_from_area};
 use crate::{
-    math::{Frame, Ray},
+    math::{OrthonormalBasis, Ray},
     sampling::warp::{uniform_cone, uniform_cone_pdf, uniform_sphere},
 };
 
@@ -65,7 +65,8 @@ impl Sphere {
             });
         };
         let axis = (self.center - from).normalize();
-        let direction = Frame::around(axis).world_from_local(uniform_cone(u, one_minus_cos));
+        let direction =
+            OrthonormalBasis::around(axis).world_from_local(uniform_cone(u, one_minus_cos));
         // At the rim rounding may miss the sphere; the tangent point stands in.
         let distance = self
             .intersect(&Ray::new(from, direction), f32::INFINITY)

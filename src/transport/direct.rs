@@ -9,7 +9,7 @@
 use glam::Vec3A;
 
 use super::{
-    emission::{Errand, Gatherer},
+    emission::{EmissionEstimator, RayKind},
     march,
     scene::Scene,
     shadow,
@@ -17,7 +17,7 @@ use super::{
     vertex::Vertex,
 };
 use crate::{
-    light::{By, Choice, Chosen, Glimpse, Light, LightSample, Receiver},
+    light::{By, ChosenLight, Light, LightChoice, LightSample, Receiver, Visibility},
     math::{PathRng, Ray, Rgb, Slot, mean},
     sampling::mis,
     surface::{self, Intersection, occluded},
@@ -29,56 +29,56 @@ const SHORT_OF_LIGHT: f32 = 1.0 - 1e-4;
 
 /// The vertex a ray left from and the density over solid angle it was drawn with there.
 #[derive(Clone, Copy, Debug)]
-pub struct Departure {
+pub struct PrevVertex {
     /// Where looks at lights would have gone from.
     pub from: Receiver,
     /// How they would have been chosen.
-    pub choice: Choice,
+    pub choice: LightChoice,
     /// Density of the direction it took.
     pub pdf_solid_angle: f32,
 }
 
 /// Which lights take part, by the toggles, and how one is chosen where no probes have a say.
-pub fn choice(strategy: &Strategy) -> Choice {
+pub fn choice(strategy: &Strategy) -> LightChoice {
     let by = match strategy.advanced.light_selection {
         LightSelection::Hierarchy | LightSelection::Probes => By::Hierarchy,
         LightSelection::Uniform => By::Uniform,
     };
-    Choice { volumes: strategy.nee, by }
+    LightChoice { volumes: strategy.nee, by }
 }
 
 /// A direction drawn at a receiver towards one of the lights.
 #[derive(Clone, Copy, Debug)]
-struct Aim<'a> {
+struct LightDirection<'a> {
     from: &'a Receiver,
-    choice: &'a Choice,
+    choice: &'a LightChoice,
     /// The light's index in the scene, and the probability of choosing it.
     light: (u32, f32),
     /// Unit direction towards it.
     direction: Vec3A,
-    at: Target,
+    at: LightTarget,
 }
 
 /// What is looked at.
 #[derive(Clone, Copy, Debug)]
-enum Target {
+enum LightTarget {
     /// A light with a place of its own.
     Solid { light: LightSample },
     /// A point of an emissive volume.
     Volume { point: Vec3A },
 }
 
-impl<'a> Aim<'a> {
+impl<'a> LightDirection<'a> {
     /// Chooses a light by `pick`, in [0, 1), and draws a direction towards it; `None` where there
     /// is nothing to look at.
     fn new(
         scene: &Scene,
         from: &'a Receiver,
-        choice: &'a Choice,
+        choice: &'a LightChoice,
         pick: f64,
         rng: &mut PathRng,
     ) -> Option<Self> {
-        let Chosen { index, light, probability } = scene.lights.choose(from, choice, pick)?;
+        let ChosenLight { index, light, probability } = scene.lights.choose(from, choice, pick)?;
         let chosen = (index, probability);
         if let Light::Volume(instance) = light {
             let pick = rng.at64(Slot::LightCell);
@@ -91,38 +91,40 @@ impl<'a> Aim<'a> {
                 choice,
                 light: chosen,
                 direction,
-                at: Target::Volume { point },
+                at: LightTarget::Volume { point },
             });
         }
         let light = light.sample(from.position, rng)?;
         let direction = light.direction;
-        Some(Self { from, choice, light: chosen, direction, at: Target::Solid { light } })
+        Some(Self { from, choice, light: chosen, direction, at: LightTarget::Solid { light } })
     }
 
     /// Density over solid angle of the direction, the choice of the light included.
     fn pdf_solid_angle(&self, scene: &Scene) -> f32 {
         match &self.at {
-            Target::Solid { light } => self.light.1 * light.pdf,
-            Target::Volume { .. } => pdf_of_volumes(scene, &self.ray(), self.from, self.choice),
+            LightTarget::Solid { light } => self.light.1 * light.pdf,
+            LightTarget::Volume { .. } => {
+                pdf_of_volumes(scene, &self.ray(), self.from, self.choice)
+            }
         }
     }
 
     /// Whether scattered rays meet what is looked at as well, so that MIS must share it.
     fn can_be_met(&self) -> bool {
         match &self.at {
-            Target::Solid { light } => light.can_be_met,
-            Target::Volume { .. } => true,
+            LightTarget::Solid { light } => light.can_be_met,
+            LightTarget::Volume { .. } => true,
         }
     }
 
     /// The point that is looked at; `None` for the sun, which is nowhere.
     fn point(&self) -> Option<Vec3A> {
         match &self.at {
-            Target::Solid { light } if light.distance.is_finite() => {
+            LightTarget::Solid { light } if light.distance.is_finite() => {
                 Some(self.from.position + light.distance * light.direction)
             }
-            Target::Solid { .. } => None,
-            Target::Volume { point } => Some(*point),
+            LightTarget::Solid { .. } => None,
+            LightTarget::Volume { point } => Some(*point),
         }
     }
 
@@ -131,28 +133,29 @@ impl<'a> Aim<'a> {
     }
 
     /// The radiance that comes from there over the density of looking there, which is `pdf`, and
-    /// the collisions of the walk towards it. `gatherer` looks at volumes.
+    /// the collisions of the walk towards it. `emission_estimator` looks at volumes.
     fn radiance_over_pdf(
         &self,
         scene: &Scene,
-        gatherer: &Gatherer,
+        emission_estimator: &EmissionEstimator,
         pdf: f32,
         rng: &mut PathRng,
     ) -> (Rgb, u32) {
         let ray = self.ray();
         match &self.at {
-            Target::Solid { light } => {
+            LightTarget::Solid { light } => {
                 let (radiance, collisions) = radiance_of_solid(scene, &ray, light, rng);
                 (radiance / pdf, collisions)
             }
-            Target::Volume { point } if looks_at_points(scene) => {
+            LightTarget::Volume { point } if looks_at_points(scene) => {
                 self.emission_at_point(scene, (*point - ray.origin).length(), rng)
             }
-            Target::Volume { .. } => {
+            LightTarget::Volume { .. } => {
                 let end = surface::intersect(&scene.surfaces, &ray);
                 let t_max = end.map_or(f32::INFINITY, |end| end.hit.t);
-                let glow = gatherer.gather(scene.world.along(ray, t_max), Errand::Light, rng);
-                (glow.emission / pdf, glow.collisions)
+                let gathered =
+                    emission_estimator.gather(scene.world.along(ray, t_max), RayKind::Light, rng);
+                (gathered.emission / pdf, gathered.collisions)
             }
         }
     }
@@ -184,7 +187,7 @@ impl<'a> Aim<'a> {
 
 /// What a look at the lights brings.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Look {
+pub struct NeeSample {
     /// Light that a sampled light sends to the vertex and on along the path.
     pub light: Rgb,
     /// The point of the light that was looked at, if it is somewhere.
@@ -193,45 +196,49 @@ pub struct Look {
     pub collisions: u32,
 }
 
-/// Looks from `vertex` at one of the lights. `gatherer` looks at volumes.
+/// Looks from `vertex` at one of the lights. `emission_estimator` looks at volumes.
 pub fn sample_lights(
     scene: &Scene,
-    gatherer: &Gatherer,
+    emission_estimator: &EmissionEstimator,
     vertex: &Vertex,
-    choice: &Choice,
+    choice: &LightChoice,
     rng: &mut PathRng,
-) -> Look {
+) -> NeeSample {
     let from = vertex.receiver();
     let pick = rng.at64(Slot::LightPick);
-    let Some(aim) = Aim::new(scene, &from, choice, pick, rng) else { return Look::default() };
-    let unseen = Look { point: aim.point(), ..Look::default() };
-    let (value, vertex_pdf) = vertex.eval(aim.direction);
+    let Some(light_direction) = LightDirection::new(scene, &from, choice, pick, rng) else {
+        return NeeSample::default();
+    };
+    let unseen = NeeSample { point: light_direction.point(), ..NeeSample::default() };
+    let (value, vertex_pdf) = vertex.eval(light_direction.direction);
     if value.max_element() <= 0.0 {
         return unseen;
     }
-    let light_pdf = aim.pdf_solid_angle(scene);
+    let light_pdf = light_direction.pdf_solid_angle(scene);
     if light_pdf <= 0.0 {
         return unseen;
     }
-    let weight = if aim.can_be_met() { mis::balance(light_pdf, vertex_pdf) } else { 1.0 };
-    let (found, collisions) = aim.radiance_over_pdf(scene, gatherer, light_pdf, rng);
-    Look { light: value * weight * found, collisions, ..unseen }
+    let weight =
+        if light_direction.can_be_met() { mis::balance(light_pdf, vertex_pdf) } else { 1.0 };
+    let (found, collisions) =
+        light_direction.radiance_over_pdf(scene, emission_estimator, light_pdf, rng);
+    NeeSample { light: value * weight * found, collisions, ..unseen }
 }
 
 /// A point of a light, chosen as a look from a receiver would; `None` where that is nowhere.
 pub fn point_of_light(
     scene: &Scene,
     from: &Receiver,
-    choice: &Choice,
+    choice: &LightChoice,
     rng: &mut PathRng,
 ) -> Option<Vec3A> {
     let pick = rng.at64(Slot::LightPick);
-    Aim::new(scene, from, choice, pick, rng)?.point()
+    LightDirection::new(scene, from, choice, pick, rng)?.point()
 }
 
 /// What a glance finds.
 #[derive(Clone, Copy, Debug)]
-pub struct Glance {
+pub struct LightEstimate {
     /// The light's index in the scene.
     pub light: u32,
     /// Unit direction towards it.
@@ -244,34 +251,42 @@ pub struct Glance {
 
 /// An estimate of the light that arrives at a receiver, by one look at one of the lights, whatever
 /// probes may say. Lights are all that is found: not the environment, not what has scattered.
-pub fn glance(
+pub fn estimate_light(
     scene: &Scene,
-    gatherer: &Gatherer,
+    emission_estimator: &EmissionEstimator,
     from: &Receiver,
     rng: &mut PathRng,
-) -> Option<Glance> {
+) -> Option<LightEstimate> {
     let choice = choice(&scene.strategy);
     let pick = rng.at64(Slot::LightPick);
-    let aim = Aim::new(scene, from, &choice, pick, rng)?;
-    let pdf = aim.pdf_solid_angle(scene);
-    (pdf > 0.0).then(|| Glance {
-        light: aim.light.0,
-        direction: aim.direction,
-        distance: aim.point().map_or(f32::INFINITY, |point| point.distance(from.position)),
-        radiance: aim.radiance_over_pdf(scene, gatherer, pdf, rng).0,
+    let light_direction = LightDirection::new(scene, from, &choice, pick, rng)?;
+    let pdf = light_direction.pdf_solid_angle(scene);
+    (pdf > 0.0).then(|| LightEstimate {
+        light: light_direction.light.0,
+        direction: light_direction.direction,
+        distance: light_direction
+            .point()
+            .map_or(f32::INFINITY, |point| point.distance(from.position)),
+        radiance: light_direction.radiance_over_pdf(scene, emission_estimator, pdf, rng).0,
     })
 }
 
 /// How much of the light that `pick`, in [0, 1), chooses by the hierarchy gets to a receiver: the
 /// transmittance from a point of it.
-pub fn glimpse(scene: &Scene, from: &Receiver, pick: f64, rng: &mut PathRng) -> Option<Glimpse> {
-    let choice = Choice { volumes: scene.strategy.nee, by: By::Hierarchy };
-    let aim = Aim::new(scene, from, &choice, pick, rng)?;
-    let (light, probability) = aim.light;
-    let distance = aim.point().map_or(f32::INFINITY, |point| point.distance(from.position));
-    let seen = mean(transmittance_to(scene, &aim.ray(), distance, rng).0);
+pub fn visibility(
+    scene: &Scene,
+    from: &Receiver,
+    pick: f64,
+    rng: &mut PathRng,
+) -> Option<Visibility> {
+    let choice = LightChoice { volumes: scene.strategy.nee, by: By::Hierarchy };
+    let light_direction = LightDirection::new(scene, from, &choice, pick, rng)?;
+    let (light, probability) = light_direction.light;
+    let distance =
+        light_direction.point().map_or(f32::INFINITY, |point| point.distance(from.position));
+    let seen = mean(transmittance_to(scene, &light_direction.ray(), distance, rng).0);
     let guess = scene.lights.irradiance(light, from) / probability;
-    Some(Glimpse { light, seen, guess })
+    Some(Visibility { light, seen, guess })
 }
 
 /// What a light with a place of its own sends along `ray`.
@@ -308,11 +323,11 @@ fn transmittance(scene: &Scene, medium: MediumRay<'_>, rng: &mut PathRng) -> (Rg
 /// the line.
 fn looks_at_points(scene: &Scene) -> bool {
     scene.strategy.advanced.nee_evaluation == NeeEvaluation::Point
-        && !scene.world.glows_beyond_lights()
+        && !scene.world.emits_beyond_lights()
 }
 
 /// Density over solid angle with which a look at some emissive volume goes along `ray`.
-fn pdf_of_volumes(scene: &Scene, ray: &Ray, from: &Receiver, choice: &Choice) -> f32 {
+fn pdf_of_volumes(scene: &Scene, ray: &Ray, from: &Receiver, choice: &LightChoice) -> f32 {
     let mut sum = 0.0;
     scene.world.emissive_along(ray, |instance, pdf| {
         if pdf > 0.0 {
@@ -324,10 +339,10 @@ fn pdf_of_volumes(scene: &Scene, ray: &Ray, from: &Receiver, choice: &Choice) ->
 
 /// The MIS weight of the volume emission found along a ray that scattering sent; 1 for camera rays
 /// (no departure), where nothing else could have found it.
-pub fn weight_of_emission(scene: &Scene, ray: &Ray, departure: Option<&Departure>) -> f32 {
-    match departure {
-        Some(departure) if scene.strategy.nee => {
-            let Departure { from, choice, pdf_solid_angle } = departure;
+pub fn weight_of_emission(scene: &Scene, ray: &Ray, prev_vertex: Option<&PrevVertex>) -> f32 {
+    match prev_vertex {
+        Some(prev_vertex) if scene.strategy.nee => {
+            let PrevVertex { from, choice, pdf_solid_angle } = prev_vertex;
             mis::balance(*pdf_solid_angle, pdf_of_volumes(scene, ray, from, choice))
         }
         _ => 1.0,
@@ -341,20 +356,22 @@ pub fn at_the_end(
     scene: &Scene,
     ray: &Ray,
     end: Option<&Intersection>,
-    departure: Option<&Departure>,
+    prev_vertex: Option<&PrevVertex>,
 ) -> Rgb {
-    let shared = |radiance: Rgb, light_pdf: &dyn Fn(&Departure) -> f32| match departure {
+    let shared = |radiance: Rgb, light_pdf: &dyn Fn(&PrevVertex) -> f32| match prev_vertex {
         None => radiance,
-        Some(departure) => radiance * mis::balance(departure.pdf_solid_angle, light_pdf(departure)),
+        Some(prev_vertex) => {
+            radiance * mis::balance(prev_vertex.pdf_solid_angle, light_pdf(prev_vertex))
+        }
     };
     match end {
-        Some(end) if end.surface.emits() => shared(end.surface.emission, &|departure| {
-            let Departure { from, choice, .. } = departure;
+        Some(end) if end.surface.emits() => shared(end.surface.emission, &|prev_vertex| {
+            let PrevVertex { from, choice, .. } = prev_vertex;
             scene.lights.pdf_of_surface(end.index, from, choice, &end.hit)
         }),
         Some(_) => Rgb::ZERO,
         None => {
-            let from = departure.map(|departure| (&departure.from, &departure.choice));
+            let from = prev_vertex.map(|prev_vertex| (&prev_vertex.from, &prev_vertex.choice));
             let suns = scene.lights.suns_behind(from, ray.direction);
             suns.fold(scene.lights.environment, |sum, (sun, pdf)| {
                 sum + shared(sun.radiance(), &|_| pdf)

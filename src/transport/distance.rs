@@ -12,7 +12,7 @@
 use glam::Vec3A;
 
 use super::{
-    probes::{Brightness, Line},
+    probes::{Brightness, DistancePdf},
     strategy::{Distance, ScatterProbability, Strategy, Tracker},
     tracking::{self, Event, Flight},
 };
@@ -34,40 +34,43 @@ const MUCH_MISSED: f32 = 1.0;
 
 /// p_select: the densities that guide along one ray, each with the same share.
 #[derive(Debug)]
-pub(super) struct Guide {
+pub(super) struct DistanceGuide {
     /// Of the probes.
-    pub(super) line: Option<Line>,
+    pub(super) distance_pdf: Option<DistancePdf>,
     /// Towards a point of a light.
     pub(super) light: Option<Equiangular>,
 }
 
-impl Guide {
+impl DistanceGuide {
     /// `None` where there is nothing to guide by.
-    pub(super) fn new(line: Option<Line>, light: Option<Equiangular>) -> Option<Self> {
-        (line.is_some() || light.is_some()).then_some(Self { line, light })
+    pub(super) fn new(
+        distance_pdf: Option<DistancePdf>,
+        light: Option<Equiangular>,
+    ) -> Option<Self> {
+        (distance_pdf.is_some() || light.is_some()).then_some(Self { distance_pdf, light })
     }
 
     fn sample(&self, u: f32) -> f32 {
-        match (&self.line, &self.light) {
-            (Some(line), Some(_)) if u < 0.5 => line.sample(2.0 * u),
+        match (&self.distance_pdf, &self.light) {
+            (Some(distance_pdf), Some(_)) if u < 0.5 => distance_pdf.sample(2.0 * u),
             (Some(_), Some(light)) => light.sample(2.0 * u - 1.0),
-            (Some(line), None) => line.sample(u),
+            (Some(distance_pdf), None) => distance_pdf.sample(u),
             (None, Some(light)) => light.sample(u),
             (None, None) => 0.0,
         }
     }
 
     fn pdf(&self, t: f32) -> f32 {
-        let line = self.line.as_ref().map(|line| line.pdf(t));
+        let distance_pdf = self.distance_pdf.as_ref().map(|distance_pdf| distance_pdf.pdf(t));
         let light = self.light.as_ref().map(|light| light.pdf(t));
-        pdf_of_both(line, light)
+        pdf_of_both(distance_pdf, light)
     }
 }
 
 /// The density of a guide from those of its parts.
-pub(super) fn pdf_of_both(line: Option<f32>, light: Option<f32>) -> f32 {
-    match (line, light) {
-        (Some(line), Some(light)) => 0.5 * (line + light),
+pub(super) fn pdf_of_both(distance_pdf: Option<f32>, light: Option<f32>) -> f32 {
+    match (distance_pdf, light) {
+        (Some(distance_pdf), Some(light)) => 0.5 * (distance_pdf + light),
         (one, None) | (None, one) => one.unwrap_or(0.0),
     }
 }
@@ -79,25 +82,29 @@ pub(super) fn middle(ray: &Ray, t0: f32, t1: f32) -> Vec3A {
 
 /// How the flights of a camera ray share what both kinds can bring, scattering.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Sharing {
+pub(super) struct Allocation {
     /// Guided flights on average.
     pub(super) flights: f32,
     /// Whether they bring all of it; else both kinds do, by MIS.
     pub(super) alone: bool,
 }
 
-impl Sharing {
-    /// How many guided flights pay, where the guides are those of `line`. The noise of a pixel is
+impl Allocation {
+    /// How many guided flights pay, where the guides are those of `distance_pdf`. The noise of a pixel is
     /// about in proportion to its light, so that the picture's falls fastest for the same effort
     /// where each gets flights in that proportion; fewer where an unguided one finds all the light
     /// as well, as in a cloud, or where the noise is that of surfaces. But each ray gets one at least,
     /// or its share of one, as it does from probes alone: what is rarely guided has rare bright paths.
-    pub(super) fn new(strategy: &Strategy, line: Option<&Line>, film: &Brightness) -> Self {
+    pub(super) fn new(
+        strategy: &Strategy,
+        distance_pdf: Option<&DistancePdf>,
+        film: &Brightness,
+    ) -> Self {
         let alone = strategy.advanced.distance == Distance::Probes;
-        let Some(line) = line else { return Self { flights: 1.0, alone } };
+        let Some(distance_pdf) = distance_pdf else { return Self { flights: 1.0, alone } };
         let least = if alone { 1.0 } else { film.share };
-        let relative = film.share * (line.light() / film.scattered);
-        let wanted = relative * (line.missed() / MUCH_MISSED).min(1.0);
+        let relative = film.share * (distance_pdf.light() / film.scattered);
+        let wanted = relative * (distance_pdf.missed() / MUCH_MISSED).min(1.0);
         let flights = match strategy.advanced.scatter_probability {
             ScatterProbability::Light if wanted.is_finite() => wanted.clamp(least, MOST_FLIGHTS),
             _ => least,
@@ -146,7 +153,7 @@ fn null(medium: MediumRay, strategy: &Strategy, throughput: Rgb, rng: &mut PathR
 pub(super) fn null_or_guided(
     medium: MediumRay,
     strategy: &Strategy,
-    guide: &Guide,
+    guide: &DistanceGuide,
     throughput: Rgb,
     rng: &mut PathRng,
 ) -> Flight {
@@ -175,34 +182,35 @@ pub(super) fn null_or_guided(
 ///
 /// With n guided flights on average the guided density counts n times in the balance heuristic;
 /// they are drawn from one number, evenly apart.
-pub(super) struct Fan<'g> {
-    guide: &'g Guide,
-    sharing: Sharing,
+pub(super) struct GuidedDistances<'g> {
+    guide: &'g DistanceGuide,
+    allocation: Allocation,
     /// Guided flights.
     count: u32,
     /// The number that places them.
     offset: f32,
 }
 
-impl<'g> Fan<'g> {
+impl<'g> GuidedDistances<'g> {
     pub(super) fn new(
         strategy: &Strategy,
-        guide: &'g Guide,
+        guide: &'g DistanceGuide,
         film: Brightness,
         rng: &mut PathRng,
     ) -> Self {
-        let sharing = Sharing::new(strategy, guide.line.as_ref(), &film);
-        let whole = sharing.flights.floor();
-        let more = sharing.flights > whole && rng.uniform() < sharing.flights - whole;
+        let allocation = Allocation::new(strategy, guide.distance_pdf.as_ref(), &film);
+        let whole = allocation.flights.floor();
+        let more = allocation.flights > whole && rng.uniform() < allocation.flights - whole;
         let count = whole as u32 + u32::from(more);
         let offset = if count > 0 { rng.at(Slot::GuidedDistance) } else { 0.0 };
-        Self { guide, sharing, count, offset }
+        Self { guide, allocation, count, offset }
     }
 
     /// What each flight is expected to bring.
     pub(super) fn expected(&self) -> f32 {
-        let light = self.guide.line.as_ref().map_or(0.0, |line| line.light());
-        light / self.sharing.flights.max(LEAST_SPREAD)
+        let light =
+            self.guide.distance_pdf.as_ref().map_or(0.0, |distance_pdf| distance_pdf.light());
+        light / self.allocation.flights.max(LEAST_SPREAD)
     }
 
     /// Where the guided flights end.
@@ -239,7 +247,7 @@ impl<'g> Fan<'g> {
 
     fn weighed(&self, mut flight: Flight, is_null: bool) -> Flight {
         if let Event::Scattered { t, .. } = flight.event {
-            flight.weight *= self.sharing.weight(flight.pdf_null, self.guide.pdf(t), is_null);
+            flight.weight *= self.allocation.weight(flight.pdf_null, self.guide.pdf(t), is_null);
         }
         flight
     }
@@ -273,16 +281,16 @@ mod tests {
         scene: &'s Scene,
         probes: &Probes,
         index: u64,
-    ) -> Option<(Guide, MediumRay<'s>)> {
+    ) -> Option<(DistanceGuide, MediumRay<'s>)> {
         let mut rng = PathRng::new(index, UVec2::ONE, 0);
         let target = 0.5 * Vec3A::new(rng.uniform(), rng.uniform(), rng.uniform());
         let origin = Vec3A::new(-3.0, 0.2, 0.1);
         let ray = Ray::new(origin, (target - origin).normalize());
         let medium = scene.world.along(ray, f32::INFINITY);
         let (t0, t1) = medium.extent()?;
-        let line = probes.along(medium.clone(), &ray).filter(|_| index % 3 != 2);
+        let distance_pdf = probes.along(medium.clone(), &ray).filter(|_| index % 3 != 2);
         let light = Equiangular::new(&ray, LAMP, probes.mean_cosine(), t0, t1);
-        Some((Guide::new(line, light.filter(|_| index % 3 != 1))?, medium))
+        Some((DistanceGuide::new(distance_pdf, light.filter(|_| index % 3 != 1))?, medium))
     }
 
     /// A flight as the path sees it, the same with its weight over the density of chance alone, and
@@ -294,7 +302,12 @@ mod tests {
     }
 
     /// Of a ray that has one flight.
-    fn one_of_one(strategy: &Strategy, guide: &Guide, medium: &MediumRay, index: u64) -> Drawn {
+    fn one_of_one(
+        strategy: &Strategy,
+        guide: &DistanceGuide,
+        medium: &MediumRay,
+        index: u64,
+    ) -> Drawn {
         let mut rng = PathRng::new(index, UVec2::ZERO, 0);
         let mut again = rng.clone();
         let flight = null_or_guided(medium.clone(), strategy, guide, Rgb::ONE, &mut rng);
@@ -310,10 +323,15 @@ mod tests {
     }
 
     /// Of a ray that has several, the first guided one if there is any.
-    fn one_of_several(strategy: &Strategy, guide: &Guide, medium: &MediumRay, index: u64) -> Drawn {
+    fn one_of_several(
+        strategy: &Strategy,
+        guide: &DistanceGuide,
+        medium: &MediumRay,
+        index: u64,
+    ) -> Drawn {
         let film = Brightness { scattered: 1.0, share: 0.7 };
         let mut rng = PathRng::new(index, UVec2::ZERO, 0);
-        let fan = Fan::new(strategy, guide, film, &mut rng);
+        let fan = GuidedDistances::new(strategy, guide, film, &mut rng);
         let mut again = rng.clone();
         let medium = || medium.clone();
         let (flight, plain) = match fan.distances().next() {
@@ -326,14 +344,14 @@ mod tests {
                 null(medium(), strategy, Rgb::ONE, &mut again),
             ),
         };
-        Drawn { flight, plain, counts: [1.0, fan.sharing.flights] }
+        Drawn { flight, plain, counts: [1.0, fan.allocation.flights] }
     }
 
     /// Density of a guide's draws at `t` from nothing but how it draws: the slope of their
     /// distribution, found by bisection. `None` where it has a step nearby.
-    fn drawn_density(guide: &Guide, t: f32) -> Option<f32> {
+    fn drawn_density(guide: &DistanceGuide, t: f32) -> Option<f32> {
         const STEP: f32 = 4e-3;
-        let both = guide.line.is_some() && guide.light.is_some();
+        let both = guide.distance_pdf.is_some() && guide.light.is_some();
         let halves = if both { vec![[0.0, 0.5], [0.5, 1.0]] } else { vec![[0.0, 1.0]] };
         let share_before = |t: f32| -> f64 {
             let of_part = |&[from, to]: &[f64; 2]| {

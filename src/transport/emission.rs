@@ -25,7 +25,7 @@ use crate::{
 
 /// What an emission walk brings back.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Glow {
+pub struct RayEmission {
     /// ∫ T ε dt along the ray.
     pub emission: Rgb,
     /// T to the ray's end.
@@ -36,7 +36,7 @@ pub struct Glow {
 
 /// Which ray of a path the emission is gathered along.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Errand {
+pub enum RayKind {
     /// The camera's.
     Camera,
     /// One that scattering or reflection sent.
@@ -45,12 +45,12 @@ pub enum Errand {
     Light,
 }
 
-/// Looks of [`Gatherer::at_a_glance`].
+/// Looks of [`EmissionEstimator::at_a_glance`].
 const GLANCE: f32 = 8.0;
 /// The share of the looks along a camera ray that any other ray gets.
 const OTHER_LOOKS: f32 = 0.25;
 
-impl Errand {
+impl RayKind {
     /// How many of `looks` along the brightest chord the errand is worth. Camera rays are looked at
     /// closely. Any other ray is one of many directions whose choice is noisier than a glance
     /// along it.
@@ -64,10 +64,10 @@ impl Errand {
 
 /// The walk that a strategy asks for, ready to be taken any number of times.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Gatherer(Kind);
+pub struct EmissionEstimator(EstimatorKind);
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Kind {
+enum EstimatorKind {
     RatioTracking(EmissionMajorant),
     /// With that many looks along the brightest chord.
     Stratified(f32),
@@ -77,7 +77,7 @@ enum Kind {
     March(f32),
 }
 
-impl Gatherer {
+impl EmissionEstimator {
     /// For a picture of `size` pixels. The optimal majorant takes a few milliseconds to find out
     /// how often to look; nothing else is measured.
     pub fn new(scene: &Scene, size: UVec2) -> Self {
@@ -85,41 +85,43 @@ impl Gatherer {
         let amount = strategy.advanced.boost_amount;
         Self(match strategy.advanced.boost_mode {
             _ if strategy.integrator == Integrator::March => {
-                Kind::March(strategy.advanced.march_step)
+                EstimatorKind::March(strategy.advanced.march_step)
             }
-            _ if !strategy.majorant_boost => Kind::RatioTracking(EmissionMajorant::of(strategy)),
-            BoostMode::Stratified => Kind::Stratified(amount),
+            _ if !strategy.majorant_boost => {
+                EstimatorKind::RatioTracking(EmissionMajorant::of(strategy))
+            }
+            BoostMode::Stratified => EstimatorKind::Stratified(amount),
             // The looks along camera rays are what is measured; without them, none.
             BoostMode::Optimal if strategy.emission_ratio_tracking && amount > 0.0 => {
                 let scale = amount / Advanced::default().boost_amount;
-                Kind::Optimal(scale * optimal_majorant::looks(scene, size))
+                EstimatorKind::Optimal(scale * optimal_majorant::looks(scene, size))
             }
-            BoostMode::Optimal => Kind::Optimal(amount),
+            BoostMode::Optimal => EstimatorKind::Optimal(amount),
             BoostMode::Clamped | BoostMode::Literal => {
-                Kind::RatioTracking(EmissionMajorant::of(strategy))
+                EstimatorKind::RatioTracking(EmissionMajorant::of(strategy))
             }
         })
     }
 
     /// By the optimal majorant, with so many looks along the brightest chord.
     pub(super) fn optimal(looks: f32) -> Self {
-        Self(Kind::Optimal(looks))
+        Self(EstimatorKind::Optimal(looks))
     }
 
     /// With so few looks that one more ray costs next to nothing.
     pub(super) fn at_a_glance() -> Self {
-        Self(Kind::Stratified(GLANCE))
+        Self(EstimatorKind::Stratified(GLANCE))
     }
 
     /// Gathers the emission along the medium.
-    pub fn gather(&self, medium: MediumRay, errand: Errand, rng: &mut PathRng) -> Glow {
+    pub fn gather(&self, medium: MediumRay, ray_kind: RayKind, rng: &mut PathRng) -> RayEmission {
         match self.0 {
-            Kind::RatioTracking(majorant) => {
+            EstimatorKind::RatioTracking(majorant) => {
                 by_rate(medium, |segment, _| majorant.rate(segment), rng)
             }
-            Kind::Stratified(looks) => stratified::gather(medium, looks, errand, rng),
-            Kind::Optimal(looks) => optimal::gather(medium, looks, errand, rng),
-            Kind::March(voxels) => march::gather(medium, voxels, rng),
+            EstimatorKind::Stratified(looks) => stratified::gather(medium, looks, ray_kind, rng),
+            EstimatorKind::Optimal(looks) => optimal::gather(medium, looks, ray_kind, rng),
+            EstimatorKind::March(voxels) => march::gather(medium, voxels, rng),
         }
     }
 }
@@ -132,7 +134,7 @@ pub(super) fn by_rate(
     medium: MediumRay,
     rate: impl FnMut(&Segment, Rgb) -> f32,
     rng: &mut PathRng,
-) -> Glow {
+) -> RayEmission {
     struct EmissionRatio<F> {
         rate: F,
         weight: Rgb,
@@ -163,7 +165,7 @@ pub(super) fn by_rate(
     }
     let mut walk = EmissionRatio { rate, weight: Rgb::ONE, emission: Rgb::ZERO };
     let collisions = track(medium, rng.exponential(), rng, &mut walk);
-    Glow { emission: walk.emission, transmittance: walk.weight, collisions }
+    RayEmission { emission: walk.emission, transmittance: walk.weight, collisions }
 }
 
 /// ε ∫₀^length exp(−μ_t t) dt per channel.

@@ -15,7 +15,7 @@
 use std::ops::ControlFlow;
 
 use super::{
-    emission::{Glow, attenuated},
+    emission::{RayEmission, attenuated},
     tracking::{Event, Flight, MOST_COLLISIONS, exp_neg, roulette_below},
     transmittance::GOLDEN,
 };
@@ -35,7 +35,7 @@ const VOXELS_PER_STRETCH: f32 = 4.0;
 
 /// A stretch of the ray that is taken to be the same all along.
 #[derive(Clone, Copy, Debug)]
-struct Step {
+struct MarchStep {
     /// Where it begins.
     t0: f32,
     length: f32,
@@ -44,7 +44,7 @@ struct Step {
     /// The number of its segment.
     segment: u32,
     /// Whether anything emits there.
-    glows: bool,
+    emits: bool,
 }
 
 /// Calls `take` for each step along the medium, from near to far, and returns how many there were.
@@ -54,7 +54,7 @@ fn march(
     mut medium: MediumRay<'_>,
     voxels: f32,
     mut jitter: f32,
-    mut take: impl FnMut(&MediumRay<'_>, &Step) -> ControlFlow<()>,
+    mut take: impl FnMut(&MediumRay<'_>, &MarchStep) -> ControlFlow<()>,
 ) -> u32 {
     let (mut steps, mut number) = (0, 0);
     while let Some(segment) = medium.next_segment() {
@@ -63,9 +63,9 @@ fn march(
         for part in 0..parts {
             let t0 = if part == 0 { segment.t0 } else { segment.t0 + part as f32 * length };
             let at = if segment.uniform { t0 } else { (t0 + jitter * length).min(segment.t1) };
-            let glows = segment.emission_rate > 0.0;
+            let emits = segment.emission_rate > 0.0;
             steps += 1;
-            let taken = take(&medium, &Step { t0, length, at, segment: number, glows });
+            let taken = take(&medium, &MarchStep { t0, length, at, segment: number, emits });
             if taken.is_break() || steps == MOST_COLLISIONS {
                 return steps;
             }
@@ -90,19 +90,19 @@ fn parts_of(segment: &Segment, voxels: f32) -> u32 {
 }
 
 /// The way marched so far.
-struct Way {
+struct MarchState {
     transmittance: Rgb,
     emission: Rgb,
 }
 
-impl Way {
+impl MarchState {
     fn new() -> Self {
         Self { transmittance: Rgb::ONE, emission: Rgb::ZERO }
     }
 
     /// Passes a step of coefficients `c`.
     #[inline]
-    fn pass(&mut self, step: &Step, c: &Coefficients, rng: &mut PathRng) -> ControlFlow<()> {
+    fn pass(&mut self, step: &MarchStep, c: &Coefficients, rng: &mut PathRng) -> ControlFlow<()> {
         if c.emission != Rgb::ZERO {
             self.emission += self.transmittance * attenuated(c.emission, c.mu_t, step.length);
         }
@@ -110,15 +110,15 @@ impl Way {
         roulette_below(&mut self.transmittance, ROULETTE_BELOW, rng)
     }
 
-    fn glow(&self, collisions: u32) -> Glow {
-        Glow { emission: self.emission, transmittance: self.transmittance, collisions }
+    fn gathered(&self, collisions: u32) -> RayEmission {
+        RayEmission { emission: self.emission, transmittance: self.transmittance, collisions }
     }
 }
 
 /// The coefficients of a step; ε is read where there is any.
 #[inline]
-fn read(medium: &MediumRay<'_>, step: &Step) -> Coefficients {
-    if step.glows {
+fn read(medium: &MediumRay<'_>, step: &MarchStep) -> Coefficients {
+    if step.emits {
         return medium.coefficients(step.at);
     }
     let (mu_t, mu_s) = medium.extinction(step.at);
@@ -126,17 +126,17 @@ fn read(medium: &MediumRay<'_>, step: &Step) -> Coefficients {
 }
 
 /// Emission and transmittance along a look at a light, by steps of so many voxels.
-pub(super) fn gather(medium: MediumRay<'_>, voxels: f32, rng: &mut PathRng) -> Glow {
-    let mut way = Way::new();
+pub(super) fn gather(medium: MediumRay<'_>, voxels: f32, rng: &mut PathRng) -> RayEmission {
+    let mut way = MarchState::new();
     let jitter = rng.at(Slot::LightEmission);
     let steps =
         march(medium, voxels, jitter, |medium, step| way.pass(step, &read(medium, step), rng));
-    way.glow(steps)
+    way.gathered(steps)
 }
 
 /// Transmittance along a shadow ray, and the number of steps.
 pub(super) fn transmittance(medium: MediumRay<'_>, voxels: f32, rng: &mut PathRng) -> (Rgb, u32) {
-    let mut way = Way::new();
+    let mut way = MarchState::new();
     let jitter = rng.at(Slot::LightEmission);
     let steps = march(medium, voxels, jitter, |medium, step| {
         let mu_t = medium.mu_t(step.at);
@@ -147,8 +147,8 @@ pub(super) fn transmittance(medium: MediumRay<'_>, voxels: f32, rng: &mut PathRn
 
 /// The steps of one ray that scatter. Its memory serves all rays of a path.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Table {
-    rows: Vec<Row>,
+pub(super) struct MarchTable {
+    rows: Vec<MarchRow>,
     /// The path's throughput over its mean: which channels matter.
     color: Rgb,
     /// T̂ of the whole ray.
@@ -156,8 +156,8 @@ pub(super) struct Table {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Row {
-    step: Step,
+struct MarchRow {
+    step: MarchStep,
     /// T̂ where it begins.
     transmittance: Rgb,
     mu_t: Rgb,
@@ -166,7 +166,7 @@ struct Row {
     sum: f32,
 }
 
-impl Row {
+impl MarchRow {
     /// ∫ T̂ μ_s dt.
     fn scattered(&self) -> Rgb {
         self.transmittance * attenuated(self.mu_s, self.mu_t, self.step.length)
@@ -201,7 +201,7 @@ impl Row {
     }
 }
 
-impl Table {
+impl MarchTable {
     /// Marches along the ray of a path and notes what scatters; emission and transmittance of the
     /// whole ray are returned.
     pub(super) fn fill(
@@ -210,17 +210,17 @@ impl Table {
         voxels: f32,
         throughput: Rgb,
         rng: &mut PathRng,
-    ) -> Glow {
+    ) -> RayEmission {
         self.rows.clear();
         self.color = throughput / mean(throughput);
-        let (mut way, mut sum) = (Way::new(), 0.0);
+        let (mut way, mut sum) = (MarchState::new(), 0.0);
         let jitter = rng.at(Slot::Emission);
         let steps = march(medium, voxels, jitter, |medium, step| {
             let c = read(medium, step);
             if c.mu_s != Rgb::ZERO {
                 let Coefficients { mu_t, mu_s, .. } = c;
                 let mut row =
-                    Row { step: *step, transmittance: way.transmittance, mu_t, mu_s, sum };
+                    MarchRow { step: *step, transmittance: way.transmittance, mu_t, mu_s, sum };
                 sum += mean(self.color * row.scattered());
                 row.sum = sum;
                 self.rows.push(row);
@@ -228,7 +228,7 @@ impl Table {
             way.pass(step, &c, rng)
         });
         self.transmittance = way.transmittance;
-        way.glow(steps)
+        way.gathered(steps)
     }
 
     /// Draws how the flight along the ray goes on: by scattering, or to its end if it `goes_on`
@@ -268,7 +268,7 @@ impl Table {
 }
 
 /// The phase function where a step was read.
-fn phase(mut medium: MediumRay<'_>, step: &Step) -> PhaseMix {
+fn phase(mut medium: MediumRay<'_>, step: &MarchStep) -> PhaseMix {
     for _ in 0..=step.segment {
         medium.next_segment();
     }

@@ -27,9 +27,9 @@ use glam::{UVec2, Vec2};
 pub use scene::Scene;
 
 use crate::math::{PathRng, Rgb, Slot};
-use emission::Gatherer;
+use emission::EmissionEstimator;
 use observer::{Nobody, Observer};
-use path::Aids;
+use path::PathContext;
 use probes::{Brightness, Probes};
 
 /// What one path brought to its pixel: four parts that sum to the beauty, and what else is kept.
@@ -79,7 +79,7 @@ pub struct Frame {
     size: UVec2,
     seed: u64,
     /// Fits the scene and the size, and so do both stay as they are.
-    gatherer: Gatherer,
+    emission_estimator: EmissionEstimator,
     /// Those of the scene.
     probes: Option<Arc<Probes>>,
     /// What the probes think of the film.
@@ -105,11 +105,11 @@ impl Frame {
         seed: u64,
         probes: Option<Arc<Probes>>,
     ) -> Self {
-        let gatherer = Gatherer::new(&scene, size);
+        let emission_estimator = EmissionEstimator::new(&scene, size);
         let brightness =
             probes.as_ref().map(|probes| Brightness::new(probes, &scene, size)).unwrap_or_default();
         let flights = OnceLock::new();
-        Self { scene, size, seed, gatherer, probes, brightness, flights }
+        Self { scene, size, seed, emission_estimator, probes, brightness, flights }
     }
 
     /// The same with another seed; all that was found out for the picture stays found.
@@ -138,13 +138,18 @@ impl Frame {
         } else {
             self.guided_flights()
         };
-        let aids = self.aids(flights);
-        path::trace(&self.scene, aids, ray, &mut rng, observer)
+        let context = self.context(flights);
+        path::trace(&self.scene, context, ray, &mut rng, observer)
     }
 
-    fn aids(&self, flights: f32) -> Aids<'_> {
+    fn context(&self, flights: f32) -> PathContext<'_> {
         let probes = self.probes.as_deref();
-        Aids { gatherer: &self.gatherer, probes, brightness: self.brightness, flights }
+        PathContext {
+            emission_estimator: &self.emission_estimator,
+            probes,
+            brightness: self.brightness,
+            flights,
+        }
     }
 
     /// Guided flights of each sample but the first, relative to what the probes propose: those that
@@ -154,7 +159,7 @@ impl Frame {
             return 1.0;
         }
         *self.flights.get_or_init(|| {
-            prepare::guided_flights::flights(&self.scene, self.size, |f| self.aids(f))
+            prepare::guided_flights::flights(&self.scene, self.size, |f| self.context(f))
         })
     }
 }

@@ -6,7 +6,7 @@ use glam::Vec3A;
 
 /// What happens along a path, in order.
 #[derive(Clone, Copy, Debug)]
-pub enum Step<'a> {
+pub enum PathStep<'a> {
     /// A ray sets out; surfaces end it at `t_max`.
     Ray {
         /// The ray.
@@ -48,7 +48,7 @@ pub enum Step<'a> {
 /// Sees every step of a path.
 pub trait Observer {
     /// Called for each step.
-    fn step(&mut self, step: Step);
+    fn step(&mut self, step: PathStep);
 }
 
 /// Sees nothing.
@@ -56,5 +56,5 @@ pub struct Nobody;
 
 impl Observer for Nobody {
     #[inline(always)]
-    fn step(&mut self, _: Step) {}
+    fn step(&mut self, _: PathStep) {}
 }

@@ -10,19 +10,19 @@
 
 use glam::Vec3A;
 
-use super::direct::Departure;
-use super::distance::{Fan, Guide};
-use super::emission::{Errand, Gatherer, Glow};
-use super::observer::{Observer, Step};
+use super::direct::PrevVertex;
+use super::distance::{DistanceGuide, GuidedDistances};
+use super::emission::{EmissionEstimator, RayEmission, RayKind};
+use super::observer::{Observer, PathStep};
 use super::probes::{Brightness, Probes};
 use super::scene::Scene;
 use super::strategy::Strategy;
 use super::tracking::{Event, Flight};
-use super::vertex::{Turn, Vertex};
-use super::weight_window::{Copies, MOST_NESTED};
+use super::vertex::{DirectionSample, Vertex};
+use super::weight_window::{MOST_NESTED, Splitting};
 use super::{PathSample, direct, distance, guiding, march, tracking};
 use crate::{
-    light::{Choice, Receiver},
+    light::{LightChoice, Receiver},
     math::{PathRng, Ray, Rgb, mean},
     sampling::equiangular::Equiangular,
     surface::{self, Intersection},
@@ -46,9 +46,9 @@ const WEIGHED_TURNS: u32 = 8;
 
 /// What was prepared for the scene.
 #[derive(Clone, Copy, Debug)]
-pub struct Aids<'s> {
+pub struct PathContext<'s> {
     /// The emission's own walk.
-    pub gatherer: &'s Gatherer,
+    pub emission_estimator: &'s EmissionEstimator,
     /// What says where scattering pays and which light to look at, as far as that is asked for.
     pub probes: Option<&'s Probes>,
     /// What the probes think of the film.
@@ -58,7 +58,7 @@ pub struct Aids<'s> {
     pub flights: f32,
 }
 
-impl<'s> Aids<'s> {
+impl<'s> PathContext<'s> {
     /// The probes, where they say where scattering pays.
     fn guides(&self, strategy: &Strategy) -> Option<&'s Probes> {
         self.probes.filter(|_| self.flights > 0.0 && strategy.guides())
@@ -68,23 +68,23 @@ impl<'s> Aids<'s> {
 /// Follows one path from the camera along `ray`.
 pub fn trace(
     scene: &Scene,
-    aids: Aids<'_>,
+    context: PathContext<'_>,
     ray: Ray,
     rng: &mut PathRng,
     observer: &mut impl Observer,
 ) -> PathSample {
     let mut path = Path {
         scene,
-        aids,
+        context,
         ray,
         throughput: Rgb::ONE,
-        lift: 1.0,
+        guiding_ratio: 1.0,
         scatters: 0,
-        departure: None,
+        prev_vertex: None,
         light: None,
         expected: 0.0,
         nested: 0,
-        table: march::Table::default(),
+        table: march::MarchTable::default(),
         branch: Branch::Main,
         sample: PathSample::default(),
     };
@@ -94,16 +94,16 @@ pub fn trace(
 
 struct Path<'s> {
     scene: &'s Scene,
-    aids: Aids<'s>,
+    context: PathContext<'s>,
     ray: Ray,
     throughput: Rgb,
     /// How many times as often as by chance alone the last turn to everywhere was drawn so: a path
     /// that was sent to light is not dim for being one of many.
-    lift: f32,
+    guiding_ratio: f32,
     /// Scattering events and reflections so far.
     scatters: u32,
     /// None for the camera ray.
-    departure: Option<Departure>,
+    prev_vertex: Option<PrevVertex>,
     /// A point of a light that guides the ray.
     light: Option<Vec3A>,
     /// What a flight of the camera ray is expected to bring; 0 where that is not known.
@@ -111,7 +111,7 @@ struct Path<'s> {
     /// Splits whose copies are being followed.
     nested: u32,
     /// Of the ray, where it is marched.
-    table: march::Table,
+    table: march::MarchTable,
     branch: Branch,
     sample: PathSample,
 }
@@ -131,7 +131,7 @@ impl Path<'_> {
         let scene = self.scene;
         let end = surface::intersect(&scene.surfaces, &self.ray);
         let t_max = end.map_or(f32::INFINITY, |end| end.hit.t);
-        observer.step(Step::Ray { ray: &self.ray, t_max, throughput: self.throughput });
+        observer.step(PathStep::Ray { ray: &self.ray, t_max, throughput: self.throughput });
 
         let medium = scene.world.along(self.ray, t_max);
         let marched = scene.strategy.is_biased().then(|| self.march(medium.clone(), rng));
@@ -147,7 +147,7 @@ impl Path<'_> {
             None => self.fly(medium, end.as_ref(), rng, observer),
         };
         if flight.emission != Rgb::ZERO {
-            let weight = direct::weight_of_emission(scene, &self.ray, self.departure.as_ref());
+            let weight = direct::weight_of_emission(scene, &self.ray, self.prev_vertex.as_ref());
             self.gather_emission(weight * flight.emission, observer);
         }
         self.throughput *= flight.weight;
@@ -172,7 +172,7 @@ impl Path<'_> {
         self.throughput *= copies.factor;
         for _ in 1..copies.count {
             let (ray, throughput, light) = (self.ray, self.throughput, self.light);
-            let (scatters, departure, branch) = (self.scatters, self.departure, self.branch);
+            let (scatters, prev_vertex, branch) = (self.scatters, self.prev_vertex, self.branch);
             self.branch = Branch::Guided { first: false };
             self.nested += 1;
             let mut goes_on = self.turn(vertex, rng, observer);
@@ -181,22 +181,22 @@ impl Path<'_> {
             }
             self.nested -= 1;
             (self.ray, self.throughput, self.light) = (ray, throughput, light);
-            (self.scatters, self.departure, self.branch) = (scatters, departure, branch);
+            (self.scatters, self.prev_vertex, self.branch) = (scatters, prev_vertex, branch);
         }
         copies.count > 0 && self.turn(vertex, rng, observer)
     }
 
     /// How often to go on from a vertex: once, where probes don't tell what comes of it.
-    fn copies(&self, vertex: &Vertex, rng: &mut PathRng) -> Copies {
-        match self.aids.guides(&self.scene.strategy) {
+    fn copies(&self, vertex: &Vertex, rng: &mut PathRng) -> Splitting {
+        match self.context.guides(&self.scene.strategy) {
             Some(probes) if self.is_weighed(vertex) => {
                 let position = vertex.receiver().position;
                 let radiance = probes.radiance_at(position, self.ray.direction);
                 let value = mean(self.throughput) * radiance / self.expected;
                 let brightness = self.throughput.max_element() / ROULETTE_BELOW;
-                Copies::draw(value, brightness, self.nested < MOST_NESTED, rng)
+                Splitting::draw(value, brightness, self.nested < MOST_NESTED, rng)
             }
-            _ => Copies { count: 1, factor: 1.0 },
+            _ => Splitting { count: 1, factor: 1.0 },
         }
     }
 
@@ -228,8 +228,8 @@ impl Path<'_> {
             }
         }
         (self.ray, self.throughput, self.light) = (ray, throughput, light);
-        (self.branch, self.scatters, self.departure) = (Branch::Main, 0, None);
-        self.lift = 1.0;
+        (self.branch, self.scatters, self.prev_vertex) = (Branch::Main, 0, None);
+        self.guiding_ratio = 1.0;
         rng.enter_vertex(0);
     }
 
@@ -242,7 +242,7 @@ impl Path<'_> {
     ) -> Option<Vertex> {
         match event {
             Event::Absorbed { t, .. } => {
-                observer.step(Step::Absorbed { point: self.ray.at(t) });
+                observer.step(PathStep::Absorbed { point: self.ray.at(t) });
                 None
             }
             Event::Scattered { t, phase } => {
@@ -250,8 +250,8 @@ impl Path<'_> {
             }
             Event::Reached => {
                 if !self.scene.strategy.gathers_whole_rays() {
-                    let departure = self.departure.as_ref();
-                    let radiance = direct::at_the_end(self.scene, &self.ray, end, departure);
+                    let prev_vertex = self.prev_vertex.as_ref();
+                    let radiance = direct::at_the_end(self.scene, &self.ray, end, prev_vertex);
                     self.gather_end(radiance, observer);
                 }
                 end.and_then(|end| Vertex::reflecting(end, &self.ray))
@@ -287,13 +287,13 @@ impl Path<'_> {
     fn fan_out(
         &mut self,
         medium: MediumRay,
-        guide: &Guide,
+        guide: &DistanceGuide,
         rng: &mut PathRng,
         observer: &mut impl Observer,
     ) -> Flight {
         let strategy = &self.scene.strategy;
-        let film = self.aids.brightness.scaled(self.aids.flights);
-        let fan = Fan::new(strategy, guide, film, rng);
+        let film = self.context.brightness.scaled(self.context.flights);
+        let fan = GuidedDistances::new(strategy, guide, film, rng);
         self.expected = fan.expected();
         for (index, t) in fan.distances().enumerate() {
             let flight = fan.guided(medium.clone(), strategy, t, self.throughput, rng);
@@ -303,15 +303,15 @@ impl Path<'_> {
     }
 
     /// What guides the flight along the present ray.
-    fn guide(&mut self, medium: &MediumRay, rng: &mut PathRng) -> Option<Guide> {
-        let guides = self.aids.guides(&self.scene.strategy);
+    fn guide(&mut self, medium: &MediumRay, rng: &mut PathRng) -> Option<DistanceGuide> {
+        let guides = self.context.guides(&self.scene.strategy);
         let probes = guides.filter(|_| self.scatters < GUIDED_RAYS)?;
         let advanced = &self.scene.strategy.advanced;
         let (t0, t1) = medium.extent()?;
         let asks = self.scatters == 0 || advanced.guide_all_vertices;
-        let line = if asks { Some(probes.along(medium.clone(), &self.ray)?) } else { None };
+        let distance_pdf = if asks { Some(probes.along(medium.clone(), &self.ray)?) } else { None };
         if !advanced.equiangular {
-            return Guide::new(line, None);
+            return DistanceGuide::new(distance_pdf, None);
         }
         if self.scatters == 0 {
             let middle = distance::middle(&self.ray, t0, t1);
@@ -322,15 +322,15 @@ impl Path<'_> {
         let light = self
             .light
             .and_then(|point| Equiangular::new(&self.ray, point, probes.mean_cosine(), t0, t1));
-        Guide::new(line, light)
+        DistanceGuide::new(distance_pdf, light)
     }
 
     /// Marches along the present ray and keeps its table.
-    fn march(&mut self, medium: MediumRay, rng: &mut PathRng) -> Glow {
+    fn march(&mut self, medium: MediumRay, rng: &mut PathRng) -> RayEmission {
         let voxels = self.scene.strategy.advanced.march_step;
-        let glow = self.table.fill(medium, voxels, self.throughput, rng);
-        self.count(glow.collisions);
-        glow
+        let gathered = self.table.fill(medium, voxels, self.throughput, rng);
+        self.count(gathered.collisions);
+        gathered
     }
 
     /// The emission of the whole ray, by the emission walk if it was not `marched`, and what lies at
@@ -338,31 +338,31 @@ impl Path<'_> {
     fn gather_whole_ray(
         &mut self,
         medium: MediumRay,
-        marched: Option<Glow>,
+        marched: Option<RayEmission>,
         end: Option<&Intersection>,
         rng: &mut PathRng,
         observer: &mut impl Observer,
     ) -> Rgb {
-        let departure = self.departure.as_ref();
-        let radiance = direct::at_the_end(self.scene, &self.ray, end, departure);
-        let dark = radiance == Rgb::ZERO && !self.scene.world.glows();
-        if dark && departure.is_some() {
+        let prev_vertex = self.prev_vertex.as_ref();
+        let radiance = direct::at_the_end(self.scene, &self.ray, end, prev_vertex);
+        let dark = radiance == Rgb::ZERO && !self.scene.world.emits();
+        if dark && prev_vertex.is_some() {
             return Rgb::ZERO;
         }
-        let is_seen = departure.is_none() && !dark;
-        let glow = marched.unwrap_or_else(|| {
-            let errand = if is_seen { Errand::Camera } else { Errand::Scattered };
-            let glow = self.aids.gatherer.gather(medium, errand, rng);
-            self.count(glow.collisions);
-            glow
+        let is_seen = prev_vertex.is_none() && !dark;
+        let gathered = marched.unwrap_or_else(|| {
+            let ray_kind = if is_seen { RayKind::Camera } else { RayKind::Scattered };
+            let gathered = self.context.emission_estimator.gather(medium, ray_kind, rng);
+            self.count(gathered.collisions);
+            gathered
         });
-        let departure = self.departure.as_ref();
-        if glow.emission != Rgb::ZERO {
-            let weight = direct::weight_of_emission(self.scene, &self.ray, departure);
-            self.gather_emission(weight * glow.emission, observer);
+        let prev_vertex = self.prev_vertex.as_ref();
+        if gathered.emission != Rgb::ZERO {
+            let weight = direct::weight_of_emission(self.scene, &self.ray, prev_vertex);
+            self.gather_emission(weight * gathered.emission, observer);
         }
-        self.gather_end(glow.transmittance * radiance, observer);
-        glow.transmittance
+        self.gather_end(gathered.transmittance * radiance, observer);
+        gathered.transmittance
     }
 
     /// Whether the path may not turn any more: its last ray still gathers, both halves of the MIS
@@ -386,12 +386,18 @@ impl Path<'_> {
             Branch::Guided { first: true } => rng.enter_vertex_of_branch(self.scatters),
             Branch::Guided { first: false } => rng.enter_vertex(u32::MAX),
         }
-        observer.step(Step::Vertex { vertex, throughput: self.throughput });
+        observer.step(PathStep::Vertex { vertex, throughput: self.throughput });
         let choice = self.choice(vertex);
-        let look = direct::sample_lights(self.scene, self.aids.gatherer, vertex, &choice, rng);
+        let look = direct::sample_lights(
+            self.scene,
+            self.context.emission_estimator,
+            vertex,
+            &choice,
+            rng,
+        );
         self.count(look.collisions);
         let light = self.throughput * look.light;
-        observer.step(Step::Light { contribution: light });
+        observer.step(PathStep::Light { contribution: light });
         self.add_scattered(light);
 
         if self.sample.guard_hit {
@@ -401,19 +407,19 @@ impl Path<'_> {
         let Some(turn) = self.choose_direction(vertex, rng) else { return false };
         self.throughput *= turn.weight;
         if vertex.is_broad() {
-            self.lift = turn.lift;
+            self.guiding_ratio = turn.guiding_ratio;
         }
         self.ray = vertex.ray(turn.direction);
         let (from, pdf_solid_angle) = (vertex.receiver(), turn.pdf_solid_angle);
-        self.departure = Some(Departure { from, choice, pdf_solid_angle });
+        self.prev_vertex = Some(PrevVertex { from, choice, pdf_solid_angle });
         self.survives(vertex, rng)
     }
 
     /// How a vertex chooses the light it looks at: by the probe around it, if there is one.
-    fn choice(&self, vertex: &Vertex) -> Choice {
+    fn choice(&self, vertex: &Vertex) -> LightChoice {
         let choice = direct::choice(&self.scene.strategy);
         let from = vertex.receiver();
-        match self.aids.probes.and_then(|probes| probes.scores(from.position)) {
+        match self.context.probes.and_then(|probes| probes.scores(from.position)) {
             Some(scores) => {
                 self.scene.lights.choice_by(scores, &from, choice.volumes, |direction| {
                     vertex.rough_value(direction)
@@ -424,14 +430,14 @@ impl Path<'_> {
     }
 
     /// Where the path goes on from a vertex: sometimes where the probes know of light.
-    fn choose_direction(&self, vertex: &Vertex, rng: &mut PathRng) -> Option<Turn> {
+    fn choose_direction(&self, vertex: &Vertex, rng: &mut PathRng) -> Option<DirectionSample> {
         let strategy = &self.scene.strategy;
-        match self.aids.probes.filter(|_| self.scatters < GUIDED_RAYS && strategy.guides()) {
+        match self.context.probes.filter(|_| self.scatters < GUIDED_RAYS && strategy.guides()) {
             Some(probes) => {
                 // Without guided flights there are no splits that would even out what the glow brings.
-                let light = self.light.filter(|_| self.aids.flights > 0.0);
-                let towards = guiding::towards(&strategy.advanced, probes, vertex, light);
-                vertex.sample_towards(&towards, rng)
+                let light = self.light.filter(|_| self.context.flights > 0.0);
+                let guiding = guiding::guiding(&strategy.advanced, probes, vertex, light);
+                vertex.sample_guided(&guiding, rng)
             }
             None => vertex.sample(rng),
         }
@@ -448,7 +454,8 @@ impl Path<'_> {
         if self.is_weighed(vertex) {
             return self.throughput != Rgb::ZERO;
         }
-        let survival = (self.throughput.max_element() * self.lift / ROULETTE_BELOW).min(1.0);
+        let survival =
+            (self.throughput.max_element() * self.guiding_ratio / ROULETTE_BELOW).min(1.0);
         if self.scatters < ROULETTE_AFTER || survival >= 1.0 {
             return survival > 0.0;
         }
@@ -466,7 +473,7 @@ impl Path<'_> {
         } else {
             self.add_scattered(contribution);
         }
-        observer.step(Step::Emission { contribution });
+        observer.step(PathStep::Emission { contribution });
     }
 
     fn gather_end(&mut self, radiance: Rgb, observer: &mut impl Observer) {
@@ -476,7 +483,7 @@ impl Path<'_> {
         } else {
             self.add_scattered(contribution);
         }
-        observer.step(Step::End { contribution });
+        observer.step(PathStep::End { contribution });
     }
 
     fn add_scattered(&mut self, contribution: Rgb) {

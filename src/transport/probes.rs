@@ -23,7 +23,7 @@ use glam::{UVec2, Vec3A};
 use rayon::prelude::*;
 
 use super::{
-    emission::Gatherer,
+    emission::EmissionEstimator,
     scene::Scene,
     strategy::{Advanced, Distance, LightSelection, Strategy},
 };
@@ -33,10 +33,10 @@ use crate::{
     volume::{medium::Segment, world::MediumRay},
 };
 pub use brightness::Brightness;
-use caustic_lobes::Foci;
-pub(super) use caustic_lobes::{Beam, Focus};
-pub use distance_pdf::Line;
-use distance_pdf::{LineBuilder, Stretch};
+use caustic_lobes::CausticLobes;
+pub(super) use caustic_lobes::{CausticLobe, PhotonSegment};
+pub use distance_pdf::DistancePdf;
+use distance_pdf::{DistancePdfBuilder, RayPiece};
 use octree::{Octree, child_of};
 pub(super) use probe::Indirect;
 use probe::Probe;
@@ -48,7 +48,7 @@ const FIRST_LEVELS: u32 = 3;
 const OUTSIDE: f32 = 0.05;
 /// Share of the directions that go towards the glow around the lights if all of their light is
 /// scattered.
-const MOST_HALO: f32 = 0.5;
+const MOST_AIRLIGHT: f32 = 0.5;
 /// Transmittance below which a line asks the probes no more.
 const DARK: f32 = 1e-4;
 /// Fixed, with numbers that no picture is likely to use.
@@ -63,7 +63,7 @@ pub struct Probes {
     /// Of the lights, by node, at leaves from where any is seen; empty if they are not asked for.
     scores: Vec<Option<Scores>>,
     /// Bundles of light that metals throw.
-    foci: Foci,
+    caustic_lobes: CausticLobes,
     /// Radiance scattered outside of the octree per unit of μ_s.
     outside: f32,
     /// Mean cosine of what scatters most.
@@ -85,14 +85,15 @@ impl Probes {
         let (bounds, scattering) = support(scene)?;
         let octree = Octree::new(&bounds);
         let cube = octree.bounds();
-        let builder = Builder { scene, gatherer: Gatherer::at_a_glance(), scattering };
+        let builder =
+            Builder { scene, emission_estimator: EmissionEstimator::at_a_glance(), scattering };
         let first = builder.probe(0, &cube);
         let scattered = airlight::scattered_share(scene);
         let mut probes = Self {
             octree,
             probes: vec![first],
             scores: Vec::new(),
-            foci: Foci::default(),
+            caustic_lobes: CausticLobes::default(),
             outside: 0.0,
             mean_cosine: 0.0,
             scattered,
@@ -164,7 +165,7 @@ impl Probes {
     pub fn heed_camera(scene: &Scene) -> bool {
         let mut instances = scene.world.instances().iter();
         instances.any(|instance| {
-            instance.volume().substance().scatters() && !is_finite(instance.bounds())
+            instance.volume().properties().scatters() && !is_finite(instance.bounds())
         })
     }
 
@@ -256,8 +257,8 @@ impl Probes {
     }
 
     /// Share of the directions after scattering that are best drawn from the glow around a light.
-    pub fn share_of_halo(&self) -> f32 {
-        MOST_HALO * self.scattered
+    pub fn share_of_airlight(&self) -> f32 {
+        MOST_AIRLIGHT * self.scattered
     }
 
     fn weighted_cosine(&self) -> f32 {
@@ -273,19 +274,19 @@ impl Probes {
     }
 
     /// The density along `ray` whose medium is given; `None` where nothing scatters.
-    pub fn along(&self, medium: MediumRay, ray: &Ray) -> Option<Line> {
-        let mut line = LineBuilder::new();
+    pub fn along(&self, medium: MediumRay, ray: &Ray) -> Option<DistancePdf> {
+        let mut distance_pdf = DistancePdfBuilder::new();
         let mut last = None;
         let mut radiance = 0.0;
-        self.visit(medium, ray, |leaf, stretch| {
+        self.visit(medium, ray, |leaf, ray_piece| {
             if last != Some(leaf) {
                 radiance = self.radiance(leaf, ray.direction);
                 last = Some(leaf);
             }
-            line.add(&Stretch { scattered: stretch.scattered * radiance, ..*stretch });
-            line.transmittance()
+            distance_pdf.add(&RayPiece { scattered: ray_piece.scattered * radiance, ..*ray_piece });
+            distance_pdf.transmittance()
         });
-        line.finish()
+        distance_pdf.finish()
     }
 
     /// Calls `found` with the stretches along `ray` whose medium is given, from near to far, each
@@ -295,7 +296,7 @@ impl Probes {
         &self,
         mut medium: MediumRay,
         ray: &Ray,
-        mut found: impl FnMut(Option<u32>, &Stretch) -> f32,
+        mut found: impl FnMut(Option<u32>, &RayPiece) -> f32,
     ) {
         let mut place = self.octree.locate(ray, 0.0);
         let mut left = 1.0;
@@ -310,7 +311,7 @@ impl Probes {
                     place = self.octree.locate(ray, t);
                 }
                 let t1 = if dark { segment.t1 } else { segment.t1.min(place.t_end) };
-                left = found(place.leaf, &self.stretch(&medium, &segment, t, t1, place.leaf));
+                left = found(place.leaf, &self.ray_piece(&medium, &segment, t, t1, place.leaf));
                 t = t1;
             }
         }
@@ -326,15 +327,15 @@ impl Probes {
     pub(super) fn around(&self, point: Vec3A) -> Option<Surroundings<'_>> {
         let leaf = self.octree.leaf_at(point)?;
         let probe = &self.probes[leaf as usize];
-        let foci = self.foci.of(leaf);
-        let bundled: f32 = foci.iter().map(|focus| focus.fluence).sum();
+        let caustic_lobes = self.caustic_lobes.of(leaf);
+        let bundled: f32 = caustic_lobes.iter().map(|lobe| lobe.fluence).sum();
         let [direct, indirect] = probe.fluences();
-        Some(Surroundings { foci, direct, indirect: (indirect - bundled).max(0.0) })
+        Some(Surroundings { caustic_lobes, direct, indirect: (indirect - bundled).max(0.0) })
     }
 
     /// Takes bundles of light.
-    pub(super) fn take_beams(&mut self, beams: Vec<Beam>) {
-        self.foci = Foci::new(beams, self.probes.len());
+    pub(super) fn take_photon_segments(&mut self, segments: Vec<PhotonSegment>) {
+        self.caustic_lobes = CausticLobes::new(segments, self.probes.len());
     }
 
     /// Length of the diagonal of the cube that the probes fill.
@@ -349,19 +350,19 @@ impl Probes {
 
     fn radiance(&self, leaf: Option<u32>, direction: Vec3A) -> f32 {
         leaf.map_or(self.outside, |leaf| {
-            in_scattered(&self.probes[leaf as usize], self.foci.of(leaf), direction)
+            in_scattered(&self.probes[leaf as usize], self.caustic_lobes.of(leaf), direction)
         })
     }
 
     /// The part of a segment between two parameters, inside of a leaf.
-    fn stretch(
+    fn ray_piece(
         &self,
         medium: &MediumRay,
         segment: &Segment,
         t0: f32,
         t1: f32,
         leaf: Option<u32>,
-    ) -> Stretch {
+    ) -> RayPiece {
         let majorant = segment.majorant;
         let (mu_t, mu_s) = if segment.uniform {
             let c = medium.coefficients(t0);
@@ -376,7 +377,7 @@ impl Probes {
             });
             (majorant * density, majorant * density * albedo)
         };
-        Stretch { t0, t1, mu_t, majorant, scattered: mu_s }
+        RayPiece { t0, t1, mu_t, majorant, scattered: mu_s }
     }
 }
 
@@ -384,7 +385,7 @@ impl Probes {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Surroundings<'p> {
     /// Bundles of light that metals throw.
-    pub(super) foci: &'p [Focus],
+    pub(super) caustic_lobes: &'p [CausticLobe],
     /// What comes straight from lights.
     pub(super) direct: f32,
     /// All else.
@@ -392,16 +393,16 @@ pub(super) struct Surroundings<'p> {
 }
 
 /// ∫ L ρ dω in a leaf back along a ray with the unit `direction`.
-fn in_scattered(probe: &Probe, foci: &[Focus], direction: Vec3A) -> f32 {
+fn in_scattered(probe: &Probe, caustic_lobes: &[CausticLobe], direction: Vec3A) -> f32 {
     let even = probe.in_scattered(direction);
-    foci.iter().fold(even, |sum, focus| sum + focus.in_scattered(probe.g(), direction))
+    caustic_lobes.iter().fold(even, |sum, lobe| sum + lobe.in_scattered(probe.g(), direction))
 }
 
 /// What probes are made from.
 struct Builder<'s> {
     scene: &'s Scene,
     /// Looks at fire.
-    gatherer: Gatherer,
+    emission_estimator: EmissionEstimator,
     /// Boxes of the volumes that may scatter.
     scattering: Vec<Aabb>,
 }
@@ -410,7 +411,7 @@ impl Builder<'_> {
     /// The probe of a node.
     fn probe(&self, node: u32, bounds: &Aabb) -> Probe {
         let mut rng = PathRng::new(SEED, UVec2::new(node, 0), 0);
-        Probe::new(self.scene, &self.gatherer, bounds, &mut rng)
+        Probe::new(self.scene, &self.emission_estimator, bounds, &mut rng)
     }
 
     /// Those of the lights around a leaf.
@@ -431,7 +432,7 @@ fn support(scene: &Scene) -> Option<(Aabb, Vec<Aabb>)> {
         .world
         .instances()
         .iter()
-        .filter(|instance| instance.volume().substance().scatters())
+        .filter(|instance| instance.volume().properties().scatters())
         .map(|instance| *instance.bounds())
         .collect();
     let mut all = scattering.iter().filter(|b| is_finite(b)).fold(Aabb::EMPTY, |a, b| a.union(b));

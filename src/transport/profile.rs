@@ -5,10 +5,10 @@ use glam::UVec2;
 
 use super::{
     Frame, direct,
-    distance::{self, Sharing},
-    probes::{Line, Probes},
+    distance::{self, Allocation},
+    probes::{DistancePdf, Probes},
     scene::Scene,
-    tracking::{Gather, exp_neg},
+    tracking::{EmissionGathering, exp_neg},
 };
 use crate::{
     light::Receiver,
@@ -31,7 +31,7 @@ const SEED: u64 = 0x7072_6f66_696c_652e;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Profile {
     /// From where the medium begins to where it ends, or to a surface, in even steps.
-    pub rows: Vec<Row>,
+    pub rows: Vec<ProfileRow>,
     /// Optical depth of all of it, of the channels' mean transmittance.
     pub optical_depth: f32,
     /// Whether anything could guide distances along the ray.
@@ -42,7 +42,7 @@ pub struct Profile {
 
 /// What is at one distance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Row {
+pub struct ProfileRow {
     /// The distance from the ray's origin.
     pub t: f32,
     /// Extinction μ_t, mean of the channels, 1/length.
@@ -81,22 +81,22 @@ impl Profile {
         }
         let count = count.max(2);
         let step = (t1 - t0) / (count - 1) as f32;
-        let mut rows: Vec<Row> = (0..count)
-            .map(|i| Row { t: (t0 + i as f32 * step).min(t1), ..Row::default() })
+        let mut rows: Vec<ProfileRow> = (0..count)
+            .map(|i| ProfileRow { t: (t0 + i as f32 * step).min(t1), ..ProfileRow::default() })
             .collect();
-        let gather = Gather::of(&scene.strategy);
+        let gather = EmissionGathering::of(&scene.strategy);
         let optical_depth = read_medium(medium.clone(), gather, &mut rows, step);
         let guides = frame.probes.as_deref().filter(|_| scene.strategy.guides());
         let flights = frame.guided_flights();
         let guided = guides.is_some_and(|probes| {
-            let line = probes.along(medium, ray);
+            let distance_pdf = probes.along(medium, ray);
             let film = frame.brightness.scaled(flights);
-            let sharing = Sharing::new(&scene.strategy, line.as_ref(), &film);
+            let allocation = Allocation::new(&scene.strategy, distance_pdf.as_ref(), &film);
             let lights = match scene.strategy.advanced.equiangular {
                 true => points_of_light(scene, probes, ray, [t0, end]),
                 false => Vec::new(),
             };
-            guide(line.as_ref(), &lights, &sharing, &mut rows)
+            guide(distance_pdf.as_ref(), &lights, &allocation, &mut rows)
         });
         Some(Self { rows, optical_depth, guided, flights })
     }
@@ -118,7 +118,12 @@ fn visible_end(mut medium: MediumRay, t0: f32) -> f32 {
 }
 
 /// Fills in what the medium decides; the optical depth of all of it.
-fn read_medium(mut medium: MediumRay, gather: Gather, rows: &mut [Row], step: f32) -> f32 {
+fn read_medium(
+    mut medium: MediumRay,
+    gather: EmissionGathering,
+    rows: &mut [ProfileRow],
+    step: f32,
+) -> f32 {
     let mut transmittance = Rgb::ONE;
     let mut next = 0;
     let last = rows.len() - 1;
@@ -155,9 +160,14 @@ fn crossed(medium: &MediumRay, segment: &Segment, t0: f32, t1: f32, step: f32) -
     (-(0..parts).map(depth).sum::<Rgb>()).exp()
 }
 
-fn read_point(medium: &MediumRay, gather: Gather, transmittance: Rgb, row: &mut Row) {
+fn read_point(
+    medium: &MediumRay,
+    gather: EmissionGathering,
+    transmittance: Rgb,
+    row: &mut ProfileRow,
+) {
     let c = medium.coefficients(row.t);
-    let scatters = if gather == Gather::Absorption { c.mu_s } else { c.mu_t };
+    let scatters = if gather == EmissionGathering::Absorption { c.mu_s } else { c.mu_t };
     // What extinguishes without scattering draws no distance that is used.
     let scatters = if c.mu_s == Rgb::ZERO { Rgb::ZERO } else { scatters };
     row.mu_t = mean(c.mu_t);
@@ -169,16 +179,16 @@ fn read_point(medium: &MediumRay, gather: Gather, transmittance: Rgb, row: &mut 
 
 /// Fills in what the guides decide; whether there are any.
 fn guide(
-    line: Option<&Line>,
+    distance_pdf: Option<&DistancePdf>,
     lights: &[Option<Equiangular>],
-    sharing: &Sharing,
-    rows: &mut [Row],
+    allocation: &Allocation,
+    rows: &mut [ProfileRow],
 ) -> bool {
-    if line.is_none() {
+    if distance_pdf.is_none() {
         return false;
     }
     for row in rows {
-        let of_line = line.map(|line| line.pdf(row.t));
+        let of_line = distance_pdf.map(|distance_pdf| distance_pdf.pdf(row.t));
         let sum = |pdfs: f32, light: &Option<Equiangular>| {
             let light = light.as_ref().map(|light| light.pdf(row.t));
             pdfs + distance::pdf_of_both(of_line, light)
@@ -187,7 +197,7 @@ fn guide(
             0 => distance::pdf_of_both(of_line, None),
             count => lights.iter().fold(0.0, sum) / count as f32,
         };
-        (row.weight_null, row.weight_guided) = weights(row, sharing);
+        (row.weight_null, row.weight_guided) = weights(row, allocation);
     }
     true
 }
@@ -210,13 +220,13 @@ fn points_of_light(
 }
 
 /// The MIS weights of both strategies.
-fn weights(row: &Row, sharing: &Sharing) -> (f32, f32) {
+fn weights(row: &ProfileRow, allocation: &Allocation) -> (f32, f32) {
     if row.p_null <= 0.0 {
         return (0.0, 0.0);
     }
-    if sharing.alone {
+    if allocation.alone {
         return (0.0, 1.0);
     }
-    let null = mis::mixture([1.0, sharing.flights], [row.p_null, row.p_select]);
+    let null = mis::mixture([1.0, allocation.flights], [row.p_null, row.p_select]);
     (null, 1.0 - null)
 }

@@ -155,7 +155,7 @@ pub(super) fn exp_neg(mu_t: Rgb, length: f32) -> Rgb {
 
 /// Where the scattering walk gathers emission.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Gather {
+pub enum EmissionGathering {
     /// On absorption, which ends the path (the baseline).
     Absorption,
     /// At every tentative collision (decoupled).
@@ -164,7 +164,7 @@ pub enum Gather {
     Nothing,
 }
 
-impl Gather {
+impl EmissionGathering {
     /// What the toggles ask of the scattering walk; ratio tracking overrides decoupling.
     pub fn of(strategy: &Strategy) -> Self {
         if strategy.emission_ratio_tracking {
@@ -265,7 +265,7 @@ pub fn fill(
 
 struct Scattering {
     majorant: EmissionMajorant,
-    gather: Gather,
+    gather: EmissionGathering,
     /// The path's throughput before the flight; only its color matters here.
     throughput: Rgb,
     /// Whether events are chosen whatever the color of the path.
@@ -276,14 +276,14 @@ struct Scattering {
     /// Where the event is, if that is given.
     until: f32,
     /// Π P_n so far, and T of the uniform stretches that have no null collisions.
-    reach: f32,
+    null_probability: f32,
     /// T of such a stretch, if the walk is in one.
-    reach_ahead: f32,
+    null_probability_ahead: f32,
     pdf_null: f32,
 }
 
 /// The events' shares of a collision, in proportion to their probabilities.
-struct Shares {
+struct EventProbabilities {
     absorb: f32,
     scatter: f32,
     null: f32,
@@ -293,12 +293,14 @@ struct Shares {
 impl Walk for Scattering {
     fn rate(&mut self, _: &MediumRay, segment: &Segment) -> f32 {
         let rate = match self.gather {
-            Gather::Nothing => segment.majorant,
-            Gather::EveryCollision => self.majorant.rate(segment),
-            Gather::Absorption => segment.majorant.max(EMISSION_FLOOR * segment.emission_rate),
+            EmissionGathering::Nothing => segment.majorant,
+            EmissionGathering::EveryCollision => self.majorant.rate(segment),
+            EmissionGathering::Absorption => {
+                segment.majorant.max(EMISSION_FLOOR * segment.emission_rate)
+            }
         };
-        self.reach *= self.reach_ahead;
-        self.reach_ahead = if self.has_no_nulls(segment) {
+        self.null_probability *= self.null_probability_ahead;
+        self.null_probability_ahead = if self.has_no_nulls(segment) {
             (-rate * (segment.t1 - segment.t0)).exp()
         } else {
             1.0
@@ -328,7 +330,7 @@ impl Walk for Scattering {
         self.weight = if escapes {
             Rgb::select(clear, self.weight / escape, Rgb::ZERO)
         } else {
-            self.reach *= 1.0 - escape;
+            self.null_probability *= 1.0 - escape;
             Rgb::select(clear, Rgb::ZERO, self.weight / (1.0 - escape))
         };
         escapes
@@ -364,12 +366,12 @@ impl Walk for Scattering {
         }
         let &Collision { t, rate, .. } = at;
         let c = medium.coefficients(t);
-        if self.gather == Gather::EveryCollision {
+        if self.gather == EmissionGathering::EveryCollision {
             self.emission += self.weight * c.emission / rate;
         }
         let mu_n = null_coefficient(rate, c.mu_t);
         let shares = self.shares(&c, mu_n, at.segment);
-        let Shares { absorb, scatter, null, total } = shares;
+        let EventProbabilities { absorb, scatter, null, total } = shares;
         if !(total > 0.0 && total.is_finite()) {
             // Nothing is left to follow; what is no number stays one and is counted.
             self.weight *= total;
@@ -379,7 +381,7 @@ impl Walk for Scattering {
         let u = if self.is_filled() { 0.0 } else { rng.uniform() * total };
         if u < null {
             self.weight *= mu_n / rate * (total / null);
-            self.reach *= null / total;
+            self.null_probability *= null / total;
             return ControlFlow::Continue(());
         }
         if self.is_filled() {
@@ -388,7 +390,7 @@ impl Walk for Scattering {
         if u < null + scatter && self.scatter(medium, at, &c, &shares) {
             return ControlFlow::Break(());
         }
-        if self.gather == Gather::Absorption {
+        if self.gather == EmissionGathering::Absorption {
             self.emission += self.weight * c.emission / rate * (total / absorb);
         }
         let real = u - null - scatter < self.share(c.mu_a());
@@ -401,15 +403,15 @@ impl Scattering {
     fn new(strategy: &Strategy, throughput: Rgb, until: f32) -> Self {
         Self {
             majorant: EmissionMajorant::of(strategy),
-            gather: Gather::of(strategy),
+            gather: EmissionGathering::of(strategy),
             throughput,
             spectral: strategy.advanced.tracker == Tracker::Spectral,
             weight: Rgb::ONE,
             emission: Rgb::ZERO,
             event: Event::Reached,
             until,
-            reach: 1.0,
-            reach_ahead: 1.0,
+            null_probability: 1.0,
+            null_probability_ahead: 1.0,
             pdf_null: 0.0,
         }
     }
@@ -431,7 +433,7 @@ impl Scattering {
     /// Whether one channel stands for all, and absorption for nothing.
     #[inline]
     fn is_gray(&self, segment: &Segment) -> bool {
-        segment.gray && self.gather == Gather::Nothing
+        segment.gray && self.gather == EmissionGathering::Nothing
     }
 
     /// Whether every collision is real: where the majorant is the extinction itself.
@@ -462,7 +464,7 @@ impl Scattering {
         }
         let u = if self.is_filled() { 0.0 } else { rng.uniform() * total };
         if u < mu_n {
-            self.reach *= mu_n / total;
+            self.null_probability *= mu_n / total;
             return ControlFlow::Continue(());
         }
         if !self.is_filled() && !self.scatter_gray(medium, at, mu_t.x, mu_s.x, mu_n) {
@@ -493,7 +495,7 @@ impl Scattering {
         } else {
             1.0
         };
-        self.pdf_null = self.reach * clear * at.rate * (mu_t / (mu_n + mu_t));
+        self.pdf_null = self.null_probability * clear * at.rate * (mu_t / (mu_n + mu_t));
         self.weight *= mu_s / mu_t;
         self.event = Event::Scattered { t: at.t, phase: medium.phase(at.t) };
         true
@@ -505,12 +507,12 @@ impl Scattering {
         medium: &MediumRay,
         at: &Collision,
         c: &Coefficients,
-        shares: &Shares,
+        shares: &EventProbabilities,
     ) -> bool {
         if c.mu_s == Rgb::ZERO || shares.scatter <= 0.0 {
             return false;
         }
-        self.pdf_null = self.reach * at.rate * (shares.scatter / shares.total);
+        self.pdf_null = self.null_probability * at.rate * (shares.scatter / shares.total);
         self.weight *= c.mu_s / at.rate * (shares.total / shares.scatter);
         self.event = Event::Scattered { t: at.t, phase: medium.phase(at.t) };
         true
@@ -530,8 +532,8 @@ impl Scattering {
     /// Where absorption alone shows the emission, it happens as often as μ_a says, and often
     /// enough to show it: ε may be positive with little or no μ_a. The other events make up for
     /// that share by their weights, so that the floor absorbs nothing by itself.
-    fn shares(&self, c: &Coefficients, mu_n: Rgb, segment: &Segment) -> Shares {
-        let [absorb, scatter] = if self.gather != Gather::Absorption {
+    fn shares(&self, c: &Coefficients, mu_n: Rgb, segment: &Segment) -> EventProbabilities {
+        let [absorb, scatter] = if self.gather != EmissionGathering::Absorption {
             [Rgb::ZERO, c.mu_t]
         } else if c.emission.max_element() > 0.0 {
             [c.mu_a().max(Rgb::splat(EMISSION_FLOOR * segment.emission_rate)), c.mu_s]
@@ -539,7 +541,7 @@ impl Scattering {
             [c.mu_a(), c.mu_s]
         };
         let [absorb, scatter, null] = [absorb, scatter, mu_n].map(|mu| self.share(mu));
-        Shares { absorb, scatter, null, total: absorb + scatter + null }
+        EventProbabilities { absorb, scatter, null, total: absorb + scatter + null }
     }
 }
 
@@ -556,7 +558,7 @@ mod tests {
     use crate::volume::field::{RgbField, ScalarField};
     use crate::volume::procedural::Noise;
     use crate::volume::world::{Instance, World};
-    use crate::volume::{Region, Substance, Volume};
+    use crate::volume::{MediumProperties, Region, Volume};
 
     /// Every tentative collision of a walk that shares another's random numbers, and what there is.
     struct Recorder {
@@ -594,7 +596,7 @@ mod tests {
 
     /// Smoke with holes, as a world.
     fn smoke(density: Rgb, albedo: Rgb, emission: Emission) -> World {
-        let substance = Substance {
+        let properties = MediumProperties {
             density: ScalarField::Noise(Noise {
                 frequency: 2.0,
                 octaves: 3,
@@ -607,14 +609,14 @@ mod tests {
             emission,
         };
         let volume =
-            Volume::varying(Aabb::centered(Vec3A::ONE), substance, Vec3A::splat(0.25), None);
+            Volume::varying(Aabb::centered(Vec3A::ONE), properties, Vec3A::splat(0.25), None);
         World::new(vec![Instance::new(Arc::new(volume), Affine3A::IDENTITY)])
     }
 
     /// Paths with an event, by chance and filled, whose density was checked.
     fn check_densities(world: &World, strategy: &Strategy, throughput: Rgb) -> [u32; 2] {
-        let gather = Gather::of(strategy);
-        let boosted = gather == Gather::EveryCollision;
+        let gather = EmissionGathering::of(strategy);
+        let boosted = gather == EmissionGathering::EveryCollision;
         let mut checked = [0, 0];
         for i in 0..2000 {
             let mut rng = PathRng::new(i, UVec2::ZERO, 0);
@@ -646,7 +648,7 @@ mod tests {
             let nulls =
                 before.iter().fold(Rgb::ONE, |p, &(t, rate)| p * (1.0 - matter(t)[0] / rate));
             let [mu_t, mu_s] = matter(t);
-            let drawn = if gather == Gather::Absorption { mu_s } else { mu_t };
+            let drawn = if gather == EmissionGathering::Absorption { mu_s } else { mu_t };
             let density = mean(throughput * nulls * drawn) / mean(throughput);
             let error = (flight.pdf_null - density).abs();
             assert!(error < 3e-3 * density + 1e-6, "{t}: {density}, said {}", flight.pdf_null);
@@ -668,7 +670,7 @@ mod tests {
         let decoupled = Strategy { emission_ratio_tracking: false, ..full };
         let unboosted = Strategy { majorant_boost: false, ..decoupled };
         let baseline = Preset::Baseline.strategy();
-        let glow = || Emission::Source { le: Rgb::new(2.0, 1.0, 0.5) };
+        let gathered = || Emission::Source { le: Rgb::new(2.0, 1.0, 0.5) };
         let none = || Emission::None;
         let mut checked = [0, 0];
         for density in [1.0, 4.0, 16.0] {
@@ -676,9 +678,9 @@ mod tests {
                 let smoke = |emission| smoke(density * color, 0.8 * color.powf(0.5), emission);
                 for (strategy, emission) in [
                     (full, none()),
-                    (full, glow()),
-                    (decoupled, glow()),
-                    (unboosted, glow()),
+                    (full, gathered()),
+                    (decoupled, gathered()),
+                    (unboosted, gathered()),
                     (baseline, none()),
                 ] {
                     let world = smoke(emission);
@@ -695,17 +697,17 @@ mod tests {
     /// A draw of zero distance collides in however thin a medium.
     #[test]
     fn a_collision_of_vanishing_rate_leaves_the_weight_alone() {
-        let glow =
+        let gathered =
             Emission::Field { field: RgbField::Constant(Rgb::ONE), scale: Rgb::splat(1e-30) };
-        let substance = Substance {
+        let properties = MediumProperties {
             density: ScalarField::Constant(0.0),
             density_scale: Rgb::ONE,
             albedo: RgbField::Constant(Rgb::ZERO),
             g: 0.0,
-            emission: glow,
+            emission: gathered,
         };
         let region = Region::Box(Aabb::centered(Vec3A::ONE));
-        let volume = Arc::new(Volume::uniform(region, substance));
+        let volume = Arc::new(Volume::uniform(region, properties));
         let world = World::new(vec![Instance::new(volume, Affine3A::IDENTITY)]);
         let mut medium = world.along(Ray::new(-3.0 * Vec3A::X, Vec3A::X), f32::INFINITY);
         let segment = medium.next_segment().unwrap();

@@ -7,7 +7,7 @@ use glam::{Vec2, Vec3A};
 
 use crate::light::Receiver;
 use crate::math::{PathRng, Ray, Rgb, Slot, mean};
-use crate::sampling::guiding_mixture::Towards;
+use crate::sampling::guiding_mixture::GuidingMixture;
 use crate::surface::{Bsdf, Hit, Intersection};
 use crate::volume::phase::PhaseMix;
 
@@ -19,18 +19,18 @@ const SHARE_OF_EVEN: f32 = 0.2;
 pub struct Vertex {
     /// Where it is.
     pub position: Vec3A,
-    kind: Kind,
+    kind: VertexKind,
 }
 
 #[derive(Clone, Debug)]
-enum Kind {
+enum VertexKind {
     Volume { phase: PhaseMix, forward: Vec3A },
     Surface { bsdf: Bsdf, offset: f32 },
 }
 
 /// A direction drawn at a vertex.
 #[derive(Clone, Copy, Debug)]
-pub struct Turn {
+pub struct DirectionSample {
     /// The unit direction.
     pub direction: Vec3A,
     /// Value over density.
@@ -38,7 +38,7 @@ pub struct Turn {
     /// Density over solid angle of chance alone.
     pub pdf_solid_angle: f32,
     /// How many times as often as by chance alone it is drawn.
-    pub lift: f32,
+    pub guiding_ratio: f32,
 }
 
 impl Vertex {
@@ -50,24 +50,24 @@ impl Vertex {
 
     /// A scattering event of a path that came along the unit `forward`.
     pub fn volume(position: Vec3A, forward: Vec3A, phase: PhaseMix) -> Self {
-        Self { position, kind: Kind::Volume { phase, forward } }
+        Self { position, kind: VertexKind::Volume { phase, forward } }
     }
 
     /// A reflection.
     pub fn surface(hit: &Hit, bsdf: Bsdf) -> Self {
-        Self { position: hit.point, kind: Kind::Surface { bsdf, offset: hit.offset() } }
+        Self { position: hit.point, kind: VertexKind::Surface { bsdf, offset: hit.offset() } }
     }
 
     /// Whether it lies on a surface.
     pub fn is_surface(&self) -> bool {
-        matches!(self.kind, Kind::Surface { .. })
+        matches!(self.kind, VertexKind::Surface { .. })
     }
 
     /// Whether it sends light everywhere, as all but metals do.
     pub fn is_broad(&self) -> bool {
         match &self.kind {
-            Kind::Volume { .. } => true,
-            Kind::Surface { bsdf, .. } => !bsdf.is_metal(),
+            VertexKind::Volume { .. } => true,
+            VertexKind::Surface { bsdf, .. } => !bsdf.is_metal(),
         }
     }
 
@@ -75,8 +75,8 @@ impl Vertex {
     /// with its cosine), and the density [`Vertex::sample`] draws it with.
     pub fn eval(&self, direction: Vec3A) -> (Rgb, f32) {
         match &self.kind {
-            Kind::Volume { phase, forward } => phase.eval(*forward, direction),
-            Kind::Surface { bsdf, .. } => bsdf.eval(direction),
+            VertexKind::Volume { phase, forward } => phase.eval(*forward, direction),
+            VertexKind::Surface { bsdf, .. } => bsdf.eval(direction),
         }
     }
 
@@ -88,44 +88,48 @@ impl Vertex {
     }
 
     /// Draws the direction the path goes on along; `None` where it ends.
-    pub fn sample(&self, rng: &mut PathRng) -> Option<Turn> {
-        let pick = rng.at(Slot::TurnPick);
-        let u = Vec2::new(rng.at(Slot::TurnX), rng.at(Slot::TurnY));
+    pub fn sample(&self, rng: &mut PathRng) -> Option<DirectionSample> {
+        let pick = rng.at(Slot::DirectionPick);
+        let u = Vec2::new(rng.at(Slot::DirectionX), rng.at(Slot::DirectionY));
         let direction = match &self.kind {
-            Kind::Volume { phase, forward } => phase.sample(*forward, pick, u),
-            Kind::Surface { bsdf, .. } => bsdf.sample(u)?,
+            VertexKind::Volume { phase, forward } => phase.sample(*forward, pick, u),
+            VertexKind::Surface { bsdf, .. } => bsdf.sample(u)?,
         };
         let (value, pdf_solid_angle) = self.eval(direction);
-        (pdf_solid_angle > 0.0).then(|| Turn {
+        (pdf_solid_angle > 0.0).then(|| DirectionSample {
             direction,
             weight: value / pdf_solid_angle,
             pdf_solid_angle,
-            lift: 1.0,
+            guiding_ratio: 1.0,
         })
     }
 
-    /// [`Vertex::sample`], or one of the directions of `towards` with their shares; the weight is
+    /// [`Vertex::sample`], or one of the directions of `guiding` with their shares; the weight is
     /// over the mixture of all. The density is still that of [`Vertex::sample`]: MIS with looks at
     /// lights is by that alone, and as those do the same the weights of both sum to one.
-    pub fn sample_towards(&self, towards: &Towards, rng: &mut PathRng) -> Option<Turn> {
-        let pick = rng.at(Slot::TurnPick);
-        let u = Vec2::new(rng.at(Slot::TurnX), rng.at(Slot::TurnY));
-        let share = towards.share();
+    pub fn sample_guided(
+        &self,
+        guiding: &GuidingMixture,
+        rng: &mut PathRng,
+    ) -> Option<DirectionSample> {
+        let pick = rng.at(Slot::DirectionPick);
+        let u = Vec2::new(rng.at(Slot::DirectionX), rng.at(Slot::DirectionY));
+        let share = guiding.share();
         let direction = match &self.kind {
-            _ if pick < share => towards.sample(pick, u)?,
-            Kind::Volume { phase, forward } => {
+            _ if pick < share => guiding.sample(pick, u)?,
+            VertexKind::Volume { phase, forward } => {
                 phase.sample(*forward, (pick - share) / (1.0 - share), u)
             }
-            Kind::Surface { bsdf, .. } => bsdf.sample(u)?,
+            VertexKind::Surface { bsdf, .. } => bsdf.sample(u)?,
         };
         let (value, pdf_solid_angle) = self.eval(direction);
-        let mixture = (1.0 - share) * pdf_solid_angle + towards.pdf_times_share(direction);
+        let mixture = (1.0 - share) * pdf_solid_angle + guiding.pdf_times_share(direction);
         let met = mixture > 0.0 && value.max_element() > 0.0;
-        met.then(|| Turn {
+        met.then(|| DirectionSample {
             direction,
             weight: value / mixture,
             pdf_solid_angle,
-            lift: mixture / pdf_solid_angle,
+            guiding_ratio: mixture / pdf_solid_angle,
         })
     }
 
@@ -137,8 +141,8 @@ impl Vertex {
     /// Where light is wanted: the origin of every ray that leaves, and the side it leaves from.
     pub fn receiver(&self) -> Receiver {
         match &self.kind {
-            Kind::Volume { .. } => Receiver { position: self.position, normal: None },
-            Kind::Surface { bsdf, offset } => {
+            VertexKind::Volume { .. } => Receiver { position: self.position, normal: None },
+            VertexKind::Surface { bsdf, offset } => {
                 let normal = bsdf.normal();
                 Receiver { position: self.position + *offset * normal, normal: Some(normal) }
             }

@@ -19,12 +19,12 @@ pub(super) const MOST_NESTED: u32 = 24;
 
 /// How often a path goes on from a vertex, and the factor of its throughput each time.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Copies {
+pub(super) struct Splitting {
     pub(super) count: u32,
     pub(super) factor: f32,
 }
 
-impl Copies {
+impl Splitting {
     /// Of a path of `value`, which ends by roulette only if `brightness` says it is dim as well:
     /// its throughput relative to one worth keeping. Long bright paths in white media are many, and
     /// what they bring the probes tell but roughly.
@@ -57,7 +57,7 @@ mod tests {
                 let (mut sum, mut squares) = (0.0, 0.0);
                 let mut rng = PathRng::new(0, UVec2::new(index as u32, 0), 0);
                 for _ in 0..DRAWS {
-                    let copies = Copies::draw(value, brightness, may_split, &mut rng);
+                    let copies = Splitting::draw(value, brightness, may_split, &mut rng);
                     assert!(copies.count <= 1 || may_split);
                     let found = f64::from(copies.count) * f64::from(copies.factor);
                     sum += found;

@@ -29,13 +29,13 @@ pub fn peak_normalized_bound(kelvin_min: f32, kelvin_max: f32) -> f32 {
     TABLE.range_max(first.min(last), last)
 }
 
-struct Table {
+struct BlackbodyTable {
     colors: Vec<Rgb>,
     /// `maxima[level][i]`: largest luminance of the entries i .. i + 2^level.
     maxima: Vec<Vec<f32>>,
 }
 
-impl Table {
+impl BlackbodyTable {
     fn new() -> Self {
         let colors: Vec<Rgb> = (0..ENTRIES).map(|i| color_of(i as f64 * f64::from(STEP))).collect();
         let mut maxima = vec![colors.iter().map(|&c| luminance(c)).collect::<Vec<f32>>()];
@@ -56,7 +56,7 @@ impl Table {
     }
 }
 
-static TABLE: LazyLock<Table> = LazyLock::new(Table::new);
+static TABLE: LazyLock<BlackbodyTable> = LazyLock::new(BlackbodyTable::new);
 
 fn color_of(kelvin: f64) -> Rgb {
     if kelvin <= 0.0 {

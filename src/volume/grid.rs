@@ -27,7 +27,7 @@ pub use voxel::Voxel;
 
 use bricks::{Brick, BrickRange, interpolate, sample_at, union};
 use index::Index;
-use stats::Summary;
+use stats::GridSummary;
 
 /// A sparse grid of `f32` or [`Vec3A`] values that takes memory for what it stores, not for the
 /// box around it.
@@ -52,7 +52,7 @@ impl<V: Voxel> SparseGrid<V> {
         bricks: Vec<Brick<V>>,
         ranges: Vec<BrickRange<V>>,
         node_ranges: Vec<(V, V)>,
-        summary: &Summary<V>,
+        summary: &GridSummary<V>,
     ) -> Self {
         let memory = size_of_val(&*bricks)
             + size_of_val(&*ranges)

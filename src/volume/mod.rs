@@ -14,4 +14,4 @@ pub mod vdb;
 mod volume;
 pub mod world;
 
-pub use volume::{Bounds, Region, Substance, Volume};
+pub use volume::{CoefficientBounds, MediumProperties, Region, Volume};

@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3A};
 use smallvec::SmallVec;
 
 use crate::{
-    math::{Frame, Rgb, mean},
+    math::{OrthonormalBasis, Rgb, mean},
     sampling::warp::about_axis,
 };
 
@@ -33,17 +33,17 @@ pub fn sample_henyey_greenstein(g: f32, forward: Vec3A, u: Vec2) -> Vec3A {
     let inverse = 1.0 / (1.0 + strength - 2.0 * strength * u.x);
     let one_minus_cos = below * u.x * inverse * (below * (1.0 + strength) * inverse + below);
     let lobe = if g < 0.0 { -forward } else { forward };
-    Frame::around(lobe).world_from_local(about_axis(one_minus_cos, TAU * u.y))
+    OrthonormalBasis::around(lobe).world_from_local(about_axis(one_minus_cos, TAU * u.y))
 }
 
 /// The phase function at a point: the overlapping volumes' lobes, weighted by their μ_s.
 #[derive(Clone, Debug, Default)]
 pub struct PhaseMix {
-    lobes: SmallVec<[Lobe; 2]>,
+    lobes: SmallVec<[HenyeyGreensteinLobe; 2]>,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Lobe {
+struct HenyeyGreensteinLobe {
     g: f32,
     mu_s: Rgb,
 }
@@ -53,7 +53,7 @@ impl PhaseMix {
     pub fn add(&mut self, g: f32, mu_s: Rgb) {
         match self.lobes.iter_mut().find(|lobe| lobe.g == g) {
             Some(lobe) => lobe.mu_s += mu_s,
-            None => self.lobes.push(Lobe { g, mu_s }),
+            None => self.lobes.push(HenyeyGreensteinLobe { g, mu_s }),
         }
     }
 

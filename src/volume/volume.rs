@@ -58,7 +58,7 @@ impl Region {
 
 /// What a volume is made of. Coefficients are per unit of *world* length, whatever its placement.
 #[derive(Clone, Debug)]
-pub struct Substance {
+pub struct MediumProperties {
     /// The density field; μ_t = `density_scale` · value.
     pub density: ScalarField,
     /// Multiplier of the density, per channel.
@@ -71,7 +71,7 @@ pub struct Substance {
     pub emission: Emission,
 }
 
-impl Substance {
+impl MediumProperties {
     /// The coefficients at a point of the volume's space.
     #[inline]
     pub fn at(&self, local: Vec3A) -> Coefficients {
@@ -145,8 +145,8 @@ impl Substance {
 #[derive(Clone, Debug)]
 pub struct Volume {
     region: Region,
-    substance: Substance,
-    bounds: Bounds,
+    properties: MediumProperties,
+    bounds: CoefficientBounds,
     /// Edge of a voxel in the volume's space; `None` where nothing has voxels.
     voxel: Option<f32>,
     /// Largest ∫ lum ε along the probing chords of each axis, in the volume's own lengths.
@@ -156,7 +156,7 @@ pub struct Volume {
 
 /// The bounds of a volume's coefficients.
 #[derive(Clone, Debug)]
-pub enum Bounds {
+pub enum CoefficientBounds {
     /// The coefficients are the same everywhere, these exactly.
     Uniform(Coefficients, Majorant),
     /// They vary; bounded by cells.
@@ -165,8 +165,8 @@ pub enum Bounds {
 
 impl Volume {
     /// A volume with the same coefficients throughout.
-    pub fn uniform(region: Region, substance: Substance) -> Self {
-        let inside = substance.at(Vec3A::ZERO);
+    pub fn uniform(region: Region, properties: MediumProperties) -> Self {
+        let inside = properties.at(Vec3A::ZERO);
         let emission = luminance(inside.emission);
         let majorant = Majorant { mu_t: inside.mu_t.max_element(), emission };
         let size = match region {
@@ -174,24 +174,24 @@ impl Volume {
             Region::Everywhere => Vec3A::ONE,
             _ => region.bounds().size(),
         };
-        let bounds = Bounds::Uniform(inside, majorant);
+        let bounds = CoefficientBounds::Uniform(inside, majorant);
         let energy = Energy::uniform(region, emission);
-        Self { region, substance, bounds, voxel: None, chords: emission * size, energy }
+        Self { region, properties, bounds, voxel: None, chords: emission * size, energy }
     }
 
     /// A volume whose coefficients vary inside a box, bounded over cells of about `cell_size`.
     /// `voxel` is the edge of the smallest stored voxel in the volume's space, if any is stored.
     pub fn varying(
         bounds: Aabb,
-        substance: Substance,
+        properties: MediumProperties,
         cell_size: Vec3A,
         voxel: Option<f32>,
     ) -> Self {
-        let cells = MajorantGrid::build(bounds, cell_size, |cell| substance.bounds_over(cell));
-        let chords = probe_chords(&cells, &substance);
-        let energy = Energy::varying(&cells, |local| luminance(substance.at(local).emission));
+        let cells = MajorantGrid::build(bounds, cell_size, |cell| properties.bounds_over(cell));
+        let chords = probe_chords(&cells, &properties);
+        let energy = Energy::varying(&cells, |local| luminance(properties.at(local).emission));
         let region = Region::Box(bounds);
-        Self { region, substance, bounds: Bounds::Cells(cells), voxel, chords, energy }
+        Self { region, properties, bounds: CoefficientBounds::Cells(cells), voxel, chords, energy }
     }
 
     /// Where it is.
@@ -200,12 +200,12 @@ impl Volume {
     }
 
     /// What it is made of.
-    pub fn substance(&self) -> &Substance {
-        &self.substance
+    pub fn properties(&self) -> &MediumProperties {
+        &self.properties
     }
 
     /// How large its coefficients get.
-    pub fn bounds(&self) -> &Bounds {
+    pub fn bounds(&self) -> &CoefficientBounds {
         &self.bounds
     }
 
@@ -228,8 +228,8 @@ impl Volume {
 /// Sums the emission at the cells' centers along every row of cells of each axis, and keeps the
 /// largest sum. It only sets the unit of the boost amount, so a coarse sum will do; but sparks
 /// between the centers count too, half a cell long, lest that unit be next to nothing.
-fn probe_chords(cells: &MajorantGrid, substance: &Substance) -> Vec3A {
-    if !substance.emission.is_some() {
+fn probe_chords(cells: &MajorantGrid, properties: &MediumProperties) -> Vec3A {
+    if !properties.emission.is_some() {
         return Vec3A::ZERO;
     }
     let mut brightest = 0.0_f32;
@@ -238,7 +238,7 @@ fn probe_chords(cells: &MajorantGrid, substance: &Substance) -> Vec3A {
         if majorant.emission <= 0.0 {
             return;
         }
-        let emission = luminance(substance.at(region.center()).emission);
+        let emission = luminance(properties.at(region.center()).emission);
         brightest = brightest.max(majorant.emission);
         for axis in 0..3 {
             let row: IVec3 = cell;

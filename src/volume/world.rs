@@ -7,8 +7,8 @@ mod emissive;
 
 use std::sync::Arc;
 
-use along::Entry;
 pub use along::MediumRay;
+use along::VolumeEntry;
 use emissive::Emissive;
 use glam::{Affine3A, Vec3A};
 use smallvec::SmallVec;
@@ -142,7 +142,7 @@ impl World {
         let mut entries = SmallVec::new();
         let mut enter = |index: u32| {
             let instance = &self.instances[index as usize];
-            entries.extend(Entry::new(instance, index, &ray, t_max));
+            entries.extend(VolumeEntry::new(instance, index, &ray, t_max));
         };
         self.unbounded.iter().for_each(|&index| enter(index));
         if self.bounded_indices.len() <= FEW {

@@ -20,8 +20,8 @@ impl Window {
     fn is_in(&self, state: State) -> bool {
         match state {
             State::Strategies => self.document().compared.is_some(),
-            State::Snapshot => self.app().duel().stored.is_some(),
-            State::Rectangle => self.app().rectangle().is_set(),
+            State::Snapshot => self.app().second_side().stored.is_some(),
+            State::Rectangle => self.app().region().is_set(),
         }
     }
 

@@ -3,7 +3,7 @@
 use egui::accesskit::Role;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
-use flambeau::app::{Layout, Side};
+use flambeau::app::{CompareLayout, Side};
 use flambeau::render::Layer;
 use flambeau::render::compare::Verdict;
 use flambeau::transport::strategy::Preset;
@@ -14,16 +14,17 @@ impl Window {
     /// Runs frames until both sides have finished their few samples and are compared.
     pub(super) fn until_compared(&mut self) {
         self.until("both sides are compared", |app| {
-            let finished = |engine: &flambeau::app::Engine| {
+            let finished = |engine: &flambeau::app::LiveRender| {
                 let latest = engine.is_current() && !engine.is_building();
                 latest && engine.picture().is_some_and(|picture| picture.stats.finished)
             };
-            let both = finished(app.engine()) && app.duel().rival().is_some_and(finished);
+            let both =
+                finished(app.engine()) && app.second_side().second_render().is_some_and(finished);
             let spp = app.editor().document.settings.film.spp;
             let all = |comparison: &flambeau::render::compare::Comparison| {
                 comparison.sides.iter().all(|side| side.fewest_samples == spp)
             };
-            both && app.duel().comparison().is_some_and(all)
+            both && app.second_side().comparison().is_some_and(all)
         });
     }
 }
@@ -48,14 +49,16 @@ fn a_key_sets_the_strategy_against_the_baseline_and_tells_how_much_it_brings() {
         picture,
         "what was rendered before goes on"
     );
-    let comparison = window.app().duel().comparison().unwrap().clone();
+    let comparison = window.app().second_side().comparison().unwrap().clone();
     assert_ne!(comparison.agreement.verdict, Verdict::Differ, "{comparison:?}");
     assert!(window.has(&comparison.sentence()), "{}", comparison.sentence());
     assert!(window.has("Noise over time: A"));
-    assert!(window.app().duel().histories().iter().all(|history| !history.points().is_empty()));
+    assert!(
+        window.app().second_side().histories().iter().all(|history| !history.points().is_empty())
+    );
 
     window.press(Modifiers::NONE, Key::C);
-    assert!(window.app().duel().rival().is_none() && !window.has("A  Baseline"));
+    assert!(window.app().second_side().second_render().is_none() && !window.has("A  Baseline"));
     assert_eq!(window.document().settings.strategy, Preset::Full.strategy());
     window.press(Modifiers::COMMAND, Key::Z);
     assert!(window.document().compared.is_some(), "undo brings the comparison back");
@@ -86,7 +89,7 @@ fn each_way_to_look_at_both_sides_has_its_picture() {
     let Some(mut window) = open() else { return };
     window.press(Modifiers::NONE, Key::C);
     window.until_compared();
-    assert_eq!(window.app().duel().layout, Layout::Wipe);
+    assert_eq!(window.app().second_side().layout, CompareLayout::Wipe);
     for (name, kinds) in [
         ("Side by side", &[][..]),
         ("Difference", &["Signed", "Absolute", "Relative"]),
@@ -95,12 +98,12 @@ fn each_way_to_look_at_both_sides_has_its_picture() {
         window.click(Role::Button, name);
         for kind in kinds {
             window.click(Role::Button, kind);
-            window.until("the map is there", |app| app.duel().map().is_some());
+            window.until("the map is there", |app| app.second_side().map().is_some());
             assert!(window.has("gray") || window.has("Noise of B over that of A"), "{kind}");
         }
     }
     window.press(Modifiers::NONE, Key::V);
-    assert_eq!(window.app().duel().layout, Layout::Wipe);
+    assert_eq!(window.app().second_side().layout, CompareLayout::Wipe);
 }
 
 /// A layer is looked at on both sides as the picture is, and a map of both goes before it.
@@ -112,13 +115,13 @@ fn layers_are_compared_and_maps_go_before_them() {
     window.click(Role::ComboBox, "Layer");
     window.click(Role::Button, Layer::Steps.name());
     window.until("both sides bring the layer", |app| {
-        let pictures = app.duel().pictures(app.engine()).unwrap();
+        let pictures = app.second_side().pictures(app.engine()).unwrap();
         pictures.iter().all(|picture| picture.layer.layer == Some(Layer::Steps))
     });
     assert!(window.has("Tracking steps per sample") && window.has("Layer: "));
     assert!(window.has("A  Baseline"), "the wipe is there still");
     window.click(Role::Button, "Difference");
-    window.until("the map is there", |app| app.duel().map().is_some());
+    window.until("the map is there", |app| app.second_side().map().is_some());
     assert!(window.has("B - A, gray") && !window.has("Tracking steps per sample"));
 }
 
@@ -146,10 +149,10 @@ fn edits_of_the_scene_go_to_both_sides() {
     let Some(mut window) = open() else { return };
     window.press(Modifiers::NONE, Key::C);
     window.until_compared();
-    let before = window.app().duel().pictures(window.app().engine()).unwrap();
+    let before = window.app().second_side().pictures(window.app().engine()).unwrap();
     window.press(Modifiers::NONE, Key::F);
     window.until_compared();
-    let after = window.app().duel().pictures(window.app().engine()).unwrap();
+    let after = window.app().second_side().pictures(window.app().engine()).unwrap();
     for side in 0..2 {
         assert_ne!(before[side].pixels, after[side].pixels);
     }
@@ -169,6 +172,6 @@ fn what_is_opened_ends_the_comparison() {
     window.until("the snapshot is open", |app| app.editor().document.compared.is_none());
     window.until("it has a picture", |app| app.engine().is_current());
     let engine = window.app().engine();
-    assert!(window.app().duel().rival().is_none());
+    assert!(window.app().second_side().second_render().is_none());
     assert!(engine.picture().unwrap().stats.samples_per_pixel >= 16.0, "all are still there");
 }

@@ -42,8 +42,8 @@ fn all_samples_go_to_the_rectangle_and_back_to_all() {
     window.press(Modifiers::SHIFT, Key::M);
     assert!(window.has("Drag a rectangle over the picture."), "there has to be one first");
     window.click(Role::Button, "Place it");
-    let area = window.app().rectangle().area(SIZE).unwrap();
-    assert_eq!(window.app().rectangle().alone(SIZE), Some(area));
+    let area = window.app().region().area(SIZE).unwrap();
+    assert_eq!(window.app().region().alone(SIZE), Some(area));
     until_fewest(&mut window, area, 1);
     window.settle();
     let before = outside(&film(&window), area);
@@ -52,12 +52,12 @@ fn all_samples_go_to_the_rectangle_and_back_to_all() {
     assert_eq!(after, before, "the others get none");
 
     window.press(Modifiers::SHIFT, Key::M);
-    assert_eq!(window.app().rectangle().alone(SIZE), None);
+    assert_eq!(window.app().region().alone(SIZE), None);
     until_fewest(&mut window, Area::of(SIZE), before.1 + 8);
     window.click(Role::Button, "Samples only here");
-    assert_eq!(window.app().rectangle().alone(SIZE), Some(area));
+    assert_eq!(window.app().region().alone(SIZE), Some(area));
     window.press(Modifiers::NONE, Key::Escape);
-    assert!(window.app().rectangle().alone(SIZE).is_none(), "without it all pixels get samples");
+    assert!(window.app().region().alone(SIZE).is_none(), "without it all pixels get samples");
     window.press(Modifiers::NONE, Key::R);
     until_fewest(&mut window, Area::of(SIZE), 3);
 }

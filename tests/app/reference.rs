@@ -41,12 +41,12 @@ impl Window {
     }
 
     fn area(&self) -> Option<Area> {
-        self.app().rectangle().area(self.picture().size)
+        self.app().region().area(self.picture().size)
     }
 
     /// Runs frames until the errors are those of the present pictures.
     fn until_measured(&mut self) {
-        self.until("the errors are there", |app| app.yardstick().errors().is_some());
+        self.until("the errors are there", |app| app.reference().errors().is_some());
     }
 
     fn load_reference(&mut self, path: &Path) {
@@ -94,10 +94,10 @@ fn a_rectangle_is_drawn_moved_by_numbers_and_taken_away() {
     assert_eq!(window.area(), Some(area(8, 9, 13, 7)), "from any corner, whole pixels");
     assert_eq!(window.document(), &opened, "the camera stays, and nothing is to be undone");
     window.until("its noise is known", |app| {
-        app.duel().part().is_some_and(|part| part.sides[0].noise.is_some())
+        app.second_side().part().is_some_and(|part| part.sides[0].noise.is_some())
     });
     let whole = window.picture().stats.noise.unwrap();
-    let part = window.app().duel().part().unwrap();
+    let part = window.app().second_side().part().unwrap();
     assert_eq!((part.area, part.sides.len()), (area(8, 9, 13, 7), 1));
     assert!(part.sides[0].noise.unwrap() < 0.9 * whole, "the ball is bright there");
     assert!(window.has("noise ") && window.has(" ± "), "the row says so");
@@ -129,13 +129,13 @@ fn both_sides_are_compared_in_the_rectangle_too() {
     window.draw_rectangle([10.0, 6.0], [21.0, 17.0]);
     let area = window.area().unwrap();
     window.until("the rectangle is compared", |app| {
-        let part = app.duel().part();
+        let part = app.second_side().part();
         part.is_some_and(|part| part.area == area && part.comparison.is_some())
     });
     let app = window.app();
-    let [a, b] = app.duel().pictures(app.engine()).unwrap();
+    let [a, b] = app.second_side().pictures(app.engine()).unwrap();
     let expected = Comparison::of_pictures([&a, &b], Some(area));
-    let part = app.duel().part().unwrap();
+    let part = app.second_side().part().unwrap();
     assert_eq!(part.comparison.as_ref(), Some(&expected));
     assert!(window.has(&expected.sentence()), "{}", expected.sentence());
 
@@ -168,20 +168,20 @@ fn errors_against_a_file_are_those_of_the_metrics() {
         let viewing = Viewing { tone: window.document().tone, ..Viewing::default() };
         Errors::of(&[&window.picture().pixels], &reference, viewing).unwrap()
     };
-    assert_eq!(window.app().yardstick().errors().unwrap(), expected(&window));
+    assert_eq!(window.app().reference().errors().unwrap(), expected(&window));
     window.until_it_says("relMSE over time: ");
-    let before = window.app().yardstick().errors().unwrap()[0].flip.mean;
+    let before = window.app().reference().errors().unwrap()[0].flip.mean;
 
     // FLIP is of what is displayed.
     window.press(Modifiers::NONE, Key::E);
     window.until("FLIP is that of the new exposure", |app| {
-        app.yardstick().errors().is_some_and(|errors| errors[0].flip.mean != before)
+        app.reference().errors().is_some_and(|errors| errors[0].flip.mean != before)
     });
-    assert_eq!(window.app().yardstick().errors().unwrap(), expected(&window));
+    assert_eq!(window.app().reference().errors().unwrap(), expected(&window));
 
     window.draw_rectangle([10.0, 6.0], [21.0, 17.0]);
     let area = window.area().unwrap();
-    let errors = &window.app().yardstick().errors().unwrap()[0];
+    let errors = &window.app().reference().errors().unwrap()[0];
     assert_eq!(
         Measure::RelMse.mean(errors, Some(area)),
         errors.rel_mse.mean_of(area.first, area.size)
@@ -199,7 +199,7 @@ fn errors_against_a_file_are_those_of_the_metrics() {
     window.press(Modifiers::NONE, Key::V);
     assert!(!window.has("FLIP error"));
     window.press(Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::K);
-    assert!(!window.has("gray.npy") && window.app().yardstick().errors().is_none());
+    assert!(!window.has("gray.npy") && window.app().reference().errors().is_none());
 }
 
 #[test]
@@ -210,12 +210,12 @@ fn references_that_do_not_fit_are_told_with_the_mend() {
     window.load_reference(&broken);
     window.until_it_says("The reference could not be used.");
     assert!(window.has("broken.npy") && window.has(".exr or an .npy"));
-    assert!(window.app().yardstick().held().is_none());
+    assert!(window.app().reference().held().is_none());
 
     let wide = window.gray("wide.npy", [40, 24], 0.25);
     window.load_reference(&wide);
     window.until_it_says("It has 40 × 24 pixels and the picture 32 × 24.");
-    assert!(window.app().yardstick().errors().is_none());
+    assert!(window.app().reference().errors().is_none());
     window.click(Role::Button, "Take its size");
     window.until_finished();
     assert_eq!(window.picture().size, UVec2::new(40, 24));
@@ -229,10 +229,10 @@ fn dropped_pictures_are_opened_or_measured_against_as_one_chooses() {
     let Some(mut window) = open() else { return };
     let exr = window.save(Modifiers::COMMAND, "kept.exr");
     window.drop_file(exr.clone());
-    assert!(window.has("kept.exr") && window.app().yardstick().held().is_none());
+    assert!(window.has("kept.exr") && window.app().reference().held().is_none());
     window.click(Role::Button, "Use as reference");
     window.until_measured();
-    assert_eq!(window.app().yardstick().errors().unwrap()[0].rel_mse.mean, 0.0);
+    assert_eq!(window.app().reference().errors().unwrap()[0].rel_mse.mean, 0.0);
     assert!(!window.has("Errors say little"));
     window.press(Modifiers::NONE, Key::F);
     assert!(window.has("Errors say little: it has another camera."));
@@ -243,11 +243,11 @@ fn dropped_pictures_are_opened_or_measured_against_as_one_chooses() {
     std::fs::write(&other, BALL.replace("\"ball\"", "\"other\"")).unwrap();
     window.drop_file(other);
     window.click(Role::Button, "Open without saving");
-    window.until("the other scene is open", |app| app.yardstick().held().is_none());
+    window.until("the other scene is open", |app| app.reference().held().is_none());
     let gray = window.gray("gray.npy", [64, 48], 0.25);
     window.drop_file(gray);
-    window.until("an array can only be a reference", |app| app.yardstick().held().is_some());
-    let is_first = |app: &App| app.yardstick().held().is_some_and(|held| held.name == "kept.exr");
+    window.until("an array can only be a reference", |app| app.reference().held().is_some());
+    let is_first = |app: &App| app.reference().held().is_some_and(|held| held.name == "kept.exr");
     window.drop_file(scene.clone());
     window.until("the first reference is there again", is_first);
     let mut window = window.restart(&scene);
@@ -265,12 +265,12 @@ fn the_picture_itself_becomes_the_reference_of_both_sides() {
     window.press(Modifiers::NONE, Key::C);
     window.until_compared();
     window.until("both are measured", |app| {
-        app.yardstick().errors().is_some_and(|errors| errors.len() == 2)
+        app.reference().errors().is_some_and(|errors| errors.len() == 2)
     });
     window.until("both are complete", |app| {
-        app.yardstick().errors().is_some_and(|errors| errors[1].rel_mse.mean == 0.0)
+        app.reference().errors().is_some_and(|errors| errors[1].rel_mse.mean == 0.0)
     });
-    let errors = window.app().yardstick().errors().unwrap();
+    let errors = window.app().reference().errors().unwrap();
     assert!(errors[0].rel_mse.mean > 0.0 && errors[0].flip.mean > 0.0, "the baseline is noisier");
     assert_eq!(errors[1].flip.mean, 0.0);
     window.click(Role::Button, "Error");
@@ -296,26 +296,29 @@ fn a_snapshot_is_one_side_against_the_live_picture() {
     window.press(Modifiers::NONE, Key::ArrowLeft);
     window.press(Modifiers::NONE, Key::ArrowLeft);
     window.click(Role::Button, "Compare as A");
-    window.until("both are compared", |app| app.duel().comparison().is_some());
+    window.until("both are compared", |app| app.second_side().comparison().is_some());
     assert!(window.has("A  Snapshot scene full") && window.has("B  Live: baseline"));
-    let [a, b] = window.app().duel().pictures(window.app().engine()).unwrap();
+    let [a, b] = window.app().second_side().pictures(window.app().engine()).unwrap();
     assert_eq!(b.pixels, live.pixels);
     assert_ne!(a.pixels, live.pixels);
     assert!(a.stats.cpu_seconds > 0.0, "its CPU time was kept");
-    assert!(window.app().duel().rival().is_none(), "nothing is rendered on its side");
+    assert!(
+        window.app().second_side().second_render().is_none(),
+        "nothing is rendered on its side"
+    );
     window.until("the live picture has its variance", |app| {
-        let sides = app.duel().comparison().map(|comparison| comparison.sides);
+        let sides = app.second_side().comparison().map(|comparison| comparison.sides);
         sides.is_some_and(|sides| sides.iter().all(|side| side.variance_of_mean.is_some()))
     });
-    let comparison = window.app().duel().comparison().unwrap();
+    let comparison = window.app().second_side().comparison().unwrap();
     assert_ne!(comparison.agreement.verdict, Verdict::Differ);
     assert!(comparison.speed_up.is_some() && window.has(&comparison.sentence()));
 
     // Flipping goes on to the next snapshot, and no further.
     window.press(Modifiers::NONE, Key::ArrowRight);
     window.until_it_says("A  Snapshot scene baseline");
-    window.until("it is read", |app| app.duel().pictures(app.engine()).is_some());
-    let [a, _] = window.app().duel().pictures(window.app().engine()).unwrap();
+    window.until("it is read", |app| app.second_side().pictures(app.engine()).is_some());
+    let [a, _] = window.app().second_side().pictures(window.app().engine()).unwrap();
     assert_eq!(a.pixels, live.pixels);
     window.press(Modifiers::NONE, Key::ArrowRight);
     assert!(window.has("A  Snapshot scene baseline"));
@@ -349,9 +352,9 @@ fn a_snapshot_of_another_size_offers_its_size() {
     window.press(Modifiers::NONE, Key::ArrowLeft);
     window.press(Modifiers::SHIFT, Key::B);
     window.until_it_says("The snapshot has 32 × 24 pixels, the live picture others.");
-    assert!(window.app().duel().comparison().is_none());
+    assert!(window.app().second_side().comparison().is_none());
     window.click(Role::Button, "Take its size");
-    window.until("they can be compared", |app| app.duel().comparison().is_some());
+    window.until("they can be compared", |app| app.second_side().comparison().is_some());
     assert!(!window.has("The snapshot has 32 × 24 pixels"));
 }
 
@@ -404,7 +407,7 @@ fn a_comparison_is_saved_with_names_and_figures() {
     };
     let wipe = save(&mut window, "wipe.png");
     let app = window.app();
-    let [a, b] = app.duel().pictures(app.engine()).unwrap();
+    let [a, b] = app.second_side().pictures(app.engine()).unwrap();
     let tone = app.editor().document.tone;
     // Enlarged 20 times to 640 pixels; the divider in the middle.
     assert_eq!(wipe.width(), 640);
@@ -418,7 +421,7 @@ fn a_comparison_is_saved_with_names_and_figures() {
     let beside = save(&mut window, "beside.png");
     assert_eq!(beside.width(), 2 * 320 + 2);
     window.press(Modifiers::NONE, Key::V);
-    window.until("the map is there", |app| app.duel().map().is_some());
+    window.until("the map is there", |app| app.second_side().map().is_some());
     let map = save(&mut window, "map.png");
     assert!(map.height() >= wipe.height() + 100, "a map has a legend");
 }
@@ -444,7 +447,7 @@ fn the_views_of_a_comparison_look_as_they_did() {
         }
         if name == "error" {
             window.until("A is measured against B", |app| {
-                app.yardstick().errors().is_some_and(|errors| {
+                app.reference().errors().is_some_and(|errors| {
                     errors.len() == 2
                         && errors[1].rel_mse.mean == 0.0
                         && errors[0].rel_mse.mean > 0.0
@@ -452,7 +455,7 @@ fn the_views_of_a_comparison_look_as_they_did() {
             });
             window.until_it_says("Squared error of A, relative");
         } else if !["wipe", "beside"].contains(&name) {
-            window.until("the map is there", |app| app.duel().map().is_some());
+            window.until("the map is there", |app| app.second_side().map().is_some());
         }
         window.harness.remove_cursor();
         window.settle();

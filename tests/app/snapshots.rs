@@ -3,9 +3,9 @@
 use std::sync::atomic::AtomicBool;
 
 use flambeau::error::NO_PROGRESS;
-use flambeau::image::exr::{self, Header, read_snapshot};
+use flambeau::image::exr::{self, SnapshotHeader, read_snapshot};
 use flambeau::render::schedule::Limits;
-use flambeau::render::{Film, Job, render_headless};
+use flambeau::render::{Film, RenderJob, render_headless};
 use flambeau::scene::{Settings, VolumeCache};
 use flambeau::transport::Frame;
 use glam::UVec2;
@@ -71,7 +71,7 @@ fn same(a: &image::RgbaImage, b: &image::RgbaImage) -> bool {
 fn headless(settings: &Settings, spp: u32) -> Film {
     let scene = scene::assemble(settings, &VolumeCache::default(), NO_PROGRESS).unwrap();
     let size = UVec2::from(settings.film.size);
-    let job = Job {
+    let job = RenderJob {
         sampler: Arc::new(Frame::new(Arc::new(scene), size, settings.film.seed)),
         size,
         limits: Limits { spp, seconds: None },
@@ -83,14 +83,14 @@ fn headless(settings: &Settings, spp: u32) -> Film {
 
 /// A snapshot of a scene after `spp` samples, as the command line writes it.
 fn write_snapshot(path: &Path, settings: &Settings, spp: u32) {
-    let header = Header {
+    let header = SnapshotHeader {
         scene: scene::to_toml(settings, None).unwrap(),
         strategy: toml::to_string(&settings.strategy).unwrap(),
         seed: settings.film.seed,
         version: env!("CARGO_PKG_VERSION").to_owned(),
         wall_seconds: 1000.0,
         files: scene::fingerprints(settings).unwrap(),
-        ..Header::default()
+        ..SnapshotHeader::default()
     };
     exr::write(path, &headless(settings, spp), &header).unwrap();
 }

@@ -1,6 +1,6 @@
 //! A morning with the window, from the first picture to the one that is gone on from the next day.
 
-use flambeau::app::Layout;
+use flambeau::app::CompareLayout;
 use flambeau::image::exr::read_snapshot;
 use flambeau::render::compare::Comparison;
 
@@ -13,12 +13,13 @@ impl Window {
     fn until_compared_anew(&mut self, told: &str) -> Comparison {
         self.until("both sides are compared", |app| {
             let is_current =
-                |engine: &flambeau::app::Engine| engine.is_current() && !engine.is_building();
-            let both = is_current(app.engine()) && app.duel().rival().is_some_and(is_current);
-            let sides = app.duel().comparison().map(|comparison| &comparison.sides);
+                |engine: &flambeau::app::LiveRender| engine.is_current() && !engine.is_building();
+            let both = is_current(app.engine())
+                && app.second_side().second_render().is_some_and(is_current);
+            let sides = app.second_side().comparison().map(|comparison| &comparison.sides);
             both && sides.is_some_and(|sides| sides.iter().all(|side| side.fewest_samples >= 4))
         });
-        let comparison = self.app().duel().comparison().unwrap().clone();
+        let comparison = self.app().second_side().comparison().unwrap().clone();
         assert!(comparison.speed_up.is_some(), "{told}: {comparison:?}");
         assert!(self.has(&comparison.sentence()), "{told}: {}", comparison.sentence());
         comparison
@@ -68,12 +69,12 @@ fn a_morning_with_the_window() {
     window.harness.drop_at(area.center() - egui::vec2(60.0, 0.0));
     window.harness.step();
     window.settle();
-    assert!(window.app().duel().divider < 0.45, "{}", window.app().duel().divider);
+    assert!(window.app().second_side().divider < 0.45, "{}", window.app().second_side().divider);
     for _ in 0..3 {
         window.press(Modifiers::NONE, Key::V);
     }
-    assert!(matches!(window.app().duel().layout, Layout::Noise(_)));
-    window.until("the map is there", |app| app.duel().map().is_some());
+    assert!(matches!(window.app().second_side().layout, CompareLayout::Noise(_)));
+    window.until("the map is there", |app| app.second_side().map().is_some());
     window.press(Modifiers::NONE, Key::V);
     window.harness.hover_at(area.center());
     window.press(Modifiers::NONE, Key::Z);

@@ -4,7 +4,7 @@ use egui::accesskit::Role;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::Queryable;
 use flambeau::app::App;
-use flambeau::render::sweep::{Kind, Progress, Source};
+use flambeau::render::sweep::{SweepProgress, TrialKind, TrialSource};
 use flambeau::transport::strategy::Preset;
 use flambeau::transport::toggle::Toggle;
 
@@ -25,7 +25,7 @@ impl Window {
     fn until_quick(&mut self) {
         self.sweep();
         self.until("strategies are rendered", |app| {
-            matches!(app.sweep().progress(), Some((Progress::Rendering(part), _)) if part > 0.01)
+            matches!(app.sweep().progress(), Some((SweepProgress::Rendering(part), _)) if part > 0.01)
         });
         self.click(Role::Button, "Cancel");
         self.until_swept();
@@ -59,7 +59,8 @@ fn a_key_tries_all_strategies_and_a_button_uses_the_best() {
 
     let ranking = window.app().sweep().results().unwrap().ranking.clone();
     assert_eq!(ranking.entries.len(), 12);
-    let rendered = ranking.entries.iter().filter(|entry| entry.trial.source == Source::Rendered);
+    let rendered =
+        ranking.entries.iter().filter(|entry| entry.trial.source == TrialSource::Rendered);
     for entry in rendered {
         let side = entry.side.unwrap();
         assert!(side.cpu_seconds >= 0.1 && side.cpu_seconds < 2.0, "{:?}", side.cpu_seconds);
@@ -68,7 +69,7 @@ fn a_key_tries_all_strategies_and_a_button_uses_the_best() {
     assert!(window.has("as full") && window.has("times as fast as baseline"));
     assert!(window.has("In use: full"), "the scene has every strategy on");
 
-    let kind = Kind::Without(Toggle::MajorantBoost);
+    let kind = TrialKind::Without(Toggle::MajorantBoost);
     window.click(Role::Button, &format!("Use: {}", kind.name()));
     let expected = Toggle::MajorantBoost.set(&Preset::Full.strategy(), false);
     assert_eq!(window.document().settings.strategy, expected);

@@ -11,8 +11,8 @@ use flambeau::{
     sampling::{mis, warp::about_axis},
     transport::{
         PathSample, Scene,
-        direct::{self, Departure},
-        emission::{Errand, Gatherer},
+        direct::{self, PrevVertex},
+        emission::{EmissionEstimator, RayKind},
         strategy::{Preset, Strategy},
         vertex::Vertex,
     },
@@ -162,7 +162,7 @@ fn second_moments(scene: &Scene, depth: f32) -> [f64; 3] {
     let vertex = vertex_below(depth);
     let [instance] = scene.world.instances() else { panic!("one volume") };
     let solid_angle = 2.0 * TAU / f64::from(STEPS * STEPS);
-    let gatherer = Gatherer::new(scene, UVec2::ONE);
+    let emission_estimator = EmissionEstimator::new(scene, UVec2::ONE);
     (0..STEPS * STEPS)
         .into_par_iter()
         .map(|i| {
@@ -174,7 +174,7 @@ fn second_moments(scene: &Scene, depth: f32) -> [f64; 3] {
             let (value, phase_pdf) = vertex.eval(direction);
             let mut rng = PathRng::new(0, UVec2::ZERO, 0);
             let medium = scene.world.along(ray, f32::INFINITY);
-            let radiance = gatherer.gather(medium, Errand::Light, &mut rng).emission.x;
+            let radiance = emission_estimator.gather(medium, RayKind::Light, &mut rng).emission.x;
             let found = f64::from(value.x * radiance);
             let weight = f64::from(mis::balance(light_pdf, phase_pdf));
             let unweighted = found * found / f64::from(light_pdf);
@@ -216,7 +216,7 @@ fn mis_bounds_the_variance_near_the_border() {
 #[test]
 fn no_look_from_inside_exceeds_the_brightest_ray() {
     let slab = glowing_slab();
-    let gatherer = Gatherer::new(&slab, UVec2::ONE);
+    let emission_estimator = EmissionEstimator::new(&slab, UVec2::ONE);
     let choice = direct::choice(&slab.strategy);
     let brightest = 0.5_f32;
     let mut sums = [0.0; 2];
@@ -225,13 +225,14 @@ fn no_look_from_inside_exceeds_the_brightest_ray() {
         let vertex = vertex_below(depth);
         for i in 0..LOOKS {
             let mut rng = PathRng::new(seed(), UVec2::ZERO, i);
-            let light = direct::sample_lights(&slab, &gatherer, &vertex, &choice, &mut rng).light;
+            let light =
+                direct::sample_lights(&slab, &emission_estimator, &vertex, &choice, &mut rng).light;
             assert!(light.max_element() <= brightest * 1.0001, "{depth}: a look brings {light}");
             let turn = vertex.sample(&mut rng).unwrap();
             let ray: Ray = vertex.ray(turn.direction);
             let (from, pdf_solid_angle) = (vertex.receiver(), turn.pdf_solid_angle);
-            let departure = Departure { from, choice, pdf_solid_angle };
-            let weight = direct::weight_of_emission(&slab, &ray, Some(&departure));
+            let prev_vertex = PrevVertex { from, choice, pdf_solid_angle };
+            let weight = direct::weight_of_emission(&slab, &ray, Some(&prev_vertex));
             assert!((0.0..=1.0).contains(&weight));
             sums[0] += f64::from(light.x);
             sums[1] += f64::from(1.0 - weight);

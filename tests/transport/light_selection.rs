@@ -3,7 +3,7 @@
 
 use crate::common::{self, Verdicts, build, full_name, measure_to, with_strategy};
 use flambeau::{
-    light::{By, Choice, Receiver},
+    light::{By, LightChoice, Receiver},
     math::{PathRng, Rgb},
     transport::{
         PathSample, Scene, direct,
@@ -98,7 +98,7 @@ fn scored(text: &str, strategy: Strategy) -> (Scene, Probes) {
 }
 
 /// Places in the mist and the way to choose a light there, with the phase function of a vertex.
-fn choices(scene: &Scene, probes: &Probes, count: u32) -> Vec<(Receiver, Choice)> {
+fn choices(scene: &Scene, probes: &Probes, count: u32) -> Vec<(Receiver, LightChoice)> {
     (0..count)
         .filter_map(|i| {
             let mut rng = PathRng::new(common::seed(), UVec2::new(i, 5), 0);

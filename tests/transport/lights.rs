@@ -8,12 +8,12 @@
 use std::{f64::consts::TAU, sync::Arc};
 
 use crate::common::{self, Z_LIMIT, build};
-use flambeau::math::{Aabb, Frame, PathRng, Ray, Rgb, luminance};
+use flambeau::math::{Aabb, OrthonormalBasis, PathRng, Ray, Rgb, luminance};
 use flambeau::sampling::warp::about_axis;
 use flambeau::volume::emission::Emission;
 use flambeau::volume::field::{RgbField, ScalarField};
 use flambeau::volume::world::{Instance, World};
-use flambeau::volume::{Region, Substance, Volume};
+use flambeau::volume::{MediumProperties, Region, Volume};
 use glam::{Affine3A, EulerRot, Quat, UVec2, Vec3, Vec3A};
 use rayon::prelude::*;
 
@@ -73,7 +73,7 @@ fn draw(instance: &Instance, rng: &mut PathRng) -> Vec3A {
 /// The directions from a point to a volume: a cone around its box, or all of them.
 struct Directions {
     from: Vec3A,
-    frame: Frame,
+    frame: OrthonormalBasis,
     one_minus_cos: f64,
 }
 
@@ -85,7 +85,7 @@ impl Directions {
         let one_minus_cos =
             if distance > radius { 1.0 - (1.0 - (radius / distance).powi(2)).sqrt() } else { 2.0 };
         let axis = if distance > 0.0 { towards.normalize() } else { Vec3A::Z };
-        Self { from, frame: Frame::around(axis), one_minus_cos }
+        Self { from, frame: OrthonormalBasis::around(axis), one_minus_cos }
     }
 
     /// The ray at coordinates in [0, 1)², over which solid angle is even.
@@ -246,7 +246,7 @@ fn all_that_emits_can_be_sampled() {
         let mut emitting = 0;
         for _ in 0..200_000 {
             let local = bounds.min + point(&mut rng) * bounds.size();
-            if luminance(volume.substance().at(local).emission) <= 0.0 {
+            if luminance(volume.properties().at(local).emission) <= 0.0 {
                 continue;
             }
             emitting += 1;
@@ -262,7 +262,7 @@ fn all_that_emits_can_be_sampled() {
 }
 
 fn glowing(region: Region, emission: f32) -> Arc<Volume> {
-    let substance = Substance {
+    let properties = MediumProperties {
         density: ScalarField::Constant(0.0),
         density_scale: Rgb::ZERO,
         albedo: RgbField::Constant(Rgb::ZERO),
@@ -274,9 +274,9 @@ fn glowing(region: Region, emission: f32) -> Arc<Volume> {
     };
     Arc::new(match region {
         Region::Box(bounds) => {
-            Volume::varying(bounds, substance, 0.3 * bounds.size().max(Vec3A::splat(1e-30)), None)
+            Volume::varying(bounds, properties, 0.3 * bounds.size().max(Vec3A::splat(1e-30)), None)
         }
-        region => Volume::uniform(region, substance),
+        region => Volume::uniform(region, properties),
     })
 }
 
@@ -314,7 +314,7 @@ fn the_power_of_a_file_is_its_emission_integrated() {
             for i in 0..dims.x * dims.y {
                 let cell = glam::UVec3::new(i % dims.x, i / dims.x, z);
                 let p = bounds.min + (cell.as_vec3a() + 0.5) / dims.as_vec3a() * bounds.size();
-                sum += f64::from(luminance(volume.substance().at(p).emission));
+                sum += f64::from(luminance(volume.properties().at(p).emission));
             }
             sum
         })

@@ -6,7 +6,7 @@ use crate::common::{build, with_strategy};
 use flambeau::math::Ray;
 use flambeau::transport::{
     Frame, Scene,
-    profile::{Profile, Row},
+    profile::{Profile, ProfileRow},
     strategy::{Advanced, Strategy},
 };
 use glam::{UVec2, Vec3A};
@@ -30,9 +30,9 @@ fn profile(scene: &Scene) -> Profile {
 }
 
 /// The trapezoidal rule.
-fn integral(rows: &[Row], value: impl Fn(&Row) -> f32) -> f64 {
+fn integral(rows: &[ProfileRow], value: impl Fn(&ProfileRow) -> f32) -> f64 {
     let pieces = rows.windows(2);
-    let area = |pair: &[Row]| {
+    let area = |pair: &[ProfileRow]| {
         0.5 * f64::from(value(&pair[0]) + value(&pair[1])) * f64::from(pair[1].t - pair[0].t)
     };
     pieces.map(area).sum()

@@ -4,8 +4,8 @@
 use egui::{Grid, RichText, Ui};
 
 use super::noise_plot::{self, COLORS, Plotted};
-use crate::app::compare::reference::{Measure, Yardstick};
-use crate::app::compare::region_figures::Part;
+use crate::app::compare::reference::{Measure, MeasuredReference};
+use crate::app::compare::region_figures::RegionFigures;
 use crate::app::panels::{Panel, explain};
 use crate::app::ui::theme::color;
 use crate::app::ui::widgets::{row, segments};
@@ -13,7 +13,7 @@ use crate::format::rounded;
 use crate::image::export;
 use crate::image::metrics::Errors;
 use crate::render::Area;
-use crate::render::compare::{NoiseHistory, Side};
+use crate::render::compare::{NoiseHistory, SideFigures};
 
 /// Width of a column of figures.
 const FIGURE: f32 = 52.0;
@@ -44,8 +44,8 @@ impl Column {
 }
 
 /// Samples, time and noise.
-pub fn of_sides(sides: &[Side]) -> Vec<Column> {
-    let column = |heading, help, cell: fn(&Side) -> String| Column {
+pub fn of_sides(sides: &[SideFigures]) -> Vec<Column> {
+    let column = |heading, help, cell: fn(&SideFigures) -> String| Column {
         heading,
         help,
         cells: sides.iter().map(cell).collect(),
@@ -59,13 +59,13 @@ pub fn of_sides(sides: &[Side]) -> Vec<Column> {
     ]
 }
 
-fn noise(sides: &[Side]) -> Column {
+fn noise(sides: &[SideFigures]) -> Column {
     let help = "The standard error of the picture relative to its brightness.";
     Column { heading: "noise", help, cells: sides.iter().map(noise_with_error).collect() }
 }
 
 /// Noise in percent with its standard error, which is half the relative one of the variance.
-fn noise_with_error(side: &Side) -> String {
+fn noise_with_error(side: &SideFigures) -> String {
     let (Some(noise), Some(variance), Some(error)) =
         (side.noise, side.variance_of_mean, side.variance_error)
     else {
@@ -92,7 +92,7 @@ pub fn of_errors(errors: &[Errors], area: Option<Area>) -> Vec<Column> {
 }
 
 /// Of a rectangle: the noise, and the errors where there are any.
-pub fn of_part(part: &Part, errors: Option<&[Errors]>) -> Vec<Column> {
+pub fn of_part(part: &RegionFigures, errors: Option<&[Errors]>) -> Vec<Column> {
     let mut columns = vec![noise(&part.sides)];
     if let Some(errors) = errors {
         columns.extend(of_errors(errors, Some(part.area)));
@@ -101,13 +101,13 @@ pub fn of_part(part: &Part, errors: Option<&[Errors]>) -> Vec<Column> {
 }
 
 /// The columns as a table to be drawn, `corner` above the names of its rows.
-pub fn table(corner: &str, names: &[&str], columns: &[Column]) -> export::Table {
+pub fn table(corner: &str, names: &[&str], columns: &[Column]) -> export::FigureTable {
     let headings = columns.iter().map(|column| column.heading.to_owned());
     let rows = names.iter().enumerate().map(|(index, name)| {
         let cells = columns.iter().filter_map(|column| column.cells.get(index).cloned());
         std::iter::once((*name).to_owned()).chain(cells).collect()
     });
-    export::Table {
+    export::FigureTable {
         headings: std::iter::once(corner.to_owned()).chain(headings).collect(),
         rows: rows.collect(),
     }
@@ -126,21 +126,21 @@ pub fn names(count: usize) -> &'static [&'static str] {
 /// Shows what is known of A and B, and how noise and errors went down. Of one picture the rest
 /// stands below it.
 pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
-    let duel = panel.duel;
-    let both = duel.comparison();
+    let second_side = panel.second_side;
+    let both = second_side.comparison();
     if let Some(both) = both {
-        let errors = panel.yardstick.errors();
+        let errors = panel.reference.errors();
         grid(ui, "sides", &of_sides(&both.sides));
         if let Some(errors) = errors {
             grid(ui, "errors", &of_errors(errors, None));
         }
-        if let Some(part) = duel.part() {
+        if let Some(part) = second_side.part() {
             explain(ui, &rectangle_title(&part.area));
             grid(ui, "rectangle", &of_part(part, errors));
         }
     }
-    if both.is_some() || panel.yardstick.held().is_some() {
-        over_time(ui, panel.yardstick, both.map(|_| duel.histories()));
+    if both.is_some() || panel.reference.held().is_some() {
+        over_time(ui, panel.reference, both.map(|_| second_side.histories()));
     }
 }
 
@@ -164,14 +164,14 @@ fn grid(ui: &mut Ui, id: &str, columns: &[Column]) {
 }
 
 /// How noise and errors went down; `noise` is that of A and B where there are two.
-fn over_time(ui: &mut Ui, yardstick: &mut Yardstick, noise: Option<&[NoiseHistory; 2]>) {
+fn over_time(ui: &mut Ui, reference: &mut MeasuredReference, noise: Option<&[NoiseHistory; 2]>) {
     let errors = Measure::ALL.map(Plotted::Error);
     let first = noise.map(|_| Plotted::Noise);
     let mut all: Vec<Plotted> = first.into_iter().collect();
-    if yardstick.held().is_some() {
+    if reference.held().is_some() {
         all.extend(errors);
     }
-    let place = all.iter().position(|plotted| *plotted == yardstick.plotted).unwrap_or(0);
+    let place = all.iter().position(|plotted| *plotted == reference.plotted).unwrap_or(0);
     if all.len() > 1 {
         let choices: Vec<(&str, &str)> =
             all.iter().map(|plotted| (plotted.name(), plotted.help())).collect();
@@ -179,7 +179,7 @@ fn over_time(ui: &mut Ui, yardstick: &mut Yardstick, noise: Option<&[NoiseHistor
         if let Some(index) =
             row(ui, "Over time", help, |ui| segments(ui, &choices, Some(place))).inner
         {
-            yardstick.plotted = all[index];
+            reference.plotted = all[index];
         }
     }
     let Some(&plotted) = all.get(place) else { return };
@@ -187,7 +187,7 @@ fn over_time(ui: &mut Ui, yardstick: &mut Yardstick, noise: Option<&[NoiseHistor
         (Plotted::Noise, Some(noise)) => noise_plot::show(ui, noise.each_ref(), plotted),
         (Plotted::Noise, None) => {}
         (Plotted::Error(measure), _) => {
-            noise_plot::show(ui, yardstick.histories(measure), plotted);
+            noise_plot::show(ui, reference.histories(measure), plotted);
         }
     }
 }

@@ -6,7 +6,7 @@ use super::figures;
 use crate::app::command::Command;
 use crate::app::compare::maps::{Difference, Noise};
 use crate::app::compare::reference::Measure;
-use crate::app::compare::second_side::{Duel, FLIP, Layout};
+use crate::app::compare::second_side::{CompareLayout, FLIP, SecondSide};
 use crate::app::document::{Document, Side, strategy_name};
 use crate::app::panels::Panel;
 use crate::app::ui::theme::color;
@@ -16,14 +16,15 @@ use crate::render::turns::Share;
 
 /// Shows which side is edited, and how to begin or end a comparison.
 pub fn sides(ui: &mut Ui, panel: &mut Panel<'_>) {
-    if panel.duel.stored.is_some() {
+    if panel.second_side.stored.is_some() {
         return stored(ui, panel);
     }
     let Some(compared) = panel.editor.document.compared else {
         button(ui, panel, Command::Compare, "Compare two strategies");
         return figures::show(ui, panel);
     };
-    let names = [Side::A, Side::B].map(|side| name(side, &panel.editor.document, panel.duel));
+    let names =
+        [Side::A, Side::B].map(|side| name(side, &panel.editor.document, panel.second_side));
     let help = "The side that toggles and choices act on.";
     let choices = [(names[0].as_str(), help), (names[1].as_str(), help)];
     let chosen = usize::from(compared.active == Side::B);
@@ -31,7 +32,7 @@ pub fn sides(ui: &mut Ui, panel: &mut Panel<'_>) {
     if clicked.is_some_and(|index| index != chosen) {
         panel.commands.push(Command::SwitchSide);
     }
-    if let Some(text) = bias(&panel.editor.document, panel.duel) {
+    if let Some(text) = bias(&panel.editor.document, panel.second_side) {
         let help = "Ray marching is on there: its picture will never be quite right.";
         ui.label(RichText::new(text).color(color::WARNING)).on_hover_text(help);
     }
@@ -52,7 +53,7 @@ pub fn sides(ui: &mut Ui, panel: &mut Panel<'_>) {
 /// Shows what the live picture is compared with, where that is a snapshot.
 fn stored(ui: &mut Ui, panel: &mut Panel<'_>) {
     let titles =
-        [Side::A, Side::B].map(|side| side_title(side, &panel.editor.document, panel.duel));
+        [Side::A, Side::B].map(|side| side_title(side, &panel.editor.document, panel.second_side));
     titles.iter().for_each(|title| {
         ui.add(egui::Label::new(RichText::new(title).color(color::TEXT_STRONG)).truncate());
     });
@@ -73,9 +74,9 @@ fn button(ui: &mut Ui, panel: &mut Panel<'_>, command: Command, text: &str) {
 }
 
 /// A side with the name of its strategy, or of the snapshot that it is.
-fn name(side: Side, document: &Document, duel: &Duel) -> String {
+fn name(side: Side, document: &Document, second_side: &SecondSide) -> String {
     let letter = if side == Side::A { "A" } else { "B" };
-    match &duel.stored {
+    match &second_side.stored {
         Some(stored) if stored.side == side => format!("{letter}  Snapshot {}", stored.name),
         Some(_) => format!("{letter}  Live: {}", strategy_name(&document.settings.strategy)),
         None => format!("{letter}  {}", capitalized(strategy_name(&document.strategy_of(side)))),
@@ -83,14 +84,14 @@ fn name(side: Side, document: &Document, duel: &Duel) -> String {
 }
 
 /// The same; of a biased side with that.
-pub fn side_title(side: Side, document: &Document, duel: &Duel) -> String {
-    let bias = if is_biased(side, document, duel) { ", biased" } else { "" };
-    format!("{}{bias}", name(side, document, duel))
+pub fn side_title(side: Side, document: &Document, second_side: &SecondSide) -> String {
+    let bias = if is_biased(side, document, second_side) { ", biased" } else { "" };
+    format!("{}{bias}", name(side, document, second_side))
 }
 
 /// Whether a side shows a picture that will never be quite right.
-pub fn is_biased(side: Side, document: &Document, duel: &Duel) -> bool {
-    match &duel.stored {
+pub fn is_biased(side: Side, document: &Document, second_side: &SecondSide) -> bool {
+    match &second_side.stored {
         Some(stored) if stored.side == side => stored.is_biased,
         Some(_) => document.settings.strategy.is_biased(),
         None => document.strategy_of(side).is_biased(),
@@ -98,10 +99,10 @@ pub fn is_biased(side: Side, document: &Document, duel: &Duel) -> bool {
 }
 
 /// Says of pictures that will never be quite right which of two that are.
-pub fn bias(document: &Document, duel: &Duel) -> Option<&'static str> {
-    match [Side::A, Side::B].map(|side| is_biased(side, document, duel)) {
+pub fn bias(document: &Document, second_side: &SecondSide) -> Option<&'static str> {
+    match [Side::A, Side::B].map(|side| is_biased(side, document, second_side)) {
         [false, false] => None,
-        _ if !duel.is_on() => Some("biased"),
+        _ if !second_side.is_on() => Some("biased"),
         [true, false] => Some("A is biased"),
         [false, true] => Some("B is biased"),
         [true, true] => Some("A and B are biased"),
@@ -134,7 +135,7 @@ fn shares(ui: &mut Ui, panel: &mut Panel<'_>) {
 }
 
 /// Chooses among the `kinds` of views that there are of both sides, or of one picture.
-pub fn layouts(ui: &mut Ui, layout: &mut Layout, (kinds, of_two): (&[Layout], bool)) {
+pub fn layouts(ui: &mut Ui, layout: &mut CompareLayout, (kinds, of_two): (&[CompareLayout], bool)) {
     let choices: Vec<(&str, String)> = kinds.iter().map(|kind| in_words(*kind, of_two)).collect();
     let choices: Vec<(&str, &str)> =
         choices.iter().map(|(name, help)| (*name, help.as_str())).collect();
@@ -148,30 +149,34 @@ pub fn layouts(ui: &mut Ui, layout: &mut Layout, (kinds, of_two): (&[Layout], bo
 }
 
 /// What a kind of view is called and what it shows.
-fn in_words(kind: Layout, of_two: bool) -> (&'static str, String) {
+fn in_words(kind: CompareLayout, of_two: bool) -> (&'static str, String) {
     let flip = format!(" Hold {} to see the other side.", FLIP.name());
     match kind {
-        Layout::Wipe if !of_two => ("Picture", "The picture itself.".to_owned()),
-        Layout::Wipe => ("Wipe", format!("A left of the divider, B right of it; drag it.{flip}")),
-        Layout::Beside => {
+        CompareLayout::Wipe if !of_two => ("Picture", "The picture itself.".to_owned()),
+        CompareLayout::Wipe => {
+            ("Wipe", format!("A left of the divider, B right of it; drag it.{flip}"))
+        }
+        CompareLayout::Beside => {
             ("Side by side", format!("A and B beside each other; zoom and moves go to both.{flip}"))
         }
-        Layout::Difference(_) => (
+        CompareLayout::Difference(_) => (
             "Difference",
             "Where and how A and B differ: nothing but noise, if both are right.".to_owned(),
         ),
-        Layout::Noise(_) => {
+        CompareLayout::Noise(_) => {
             ("Noise", "How noisy each pixel is: the standard error of its gray value.".to_owned())
         }
-        Layout::Error(..) => ("Error", "How far each pixel is from the reference.".to_owned()),
+        CompareLayout::Error(..) => {
+            ("Error", "How far each pixel is from the reference.".to_owned())
+        }
     }
 }
 
 /// The finer choices of a view.
-fn finer(ui: &mut Ui, layout: &mut Layout, of_two: bool) {
+fn finer(ui: &mut Ui, layout: &mut CompareLayout, of_two: bool) {
     match layout {
-        Layout::Wipe | Layout::Beside => {}
-        Layout::Difference(difference) => {
+        CompareLayout::Wipe | CompareLayout::Beside => {}
+        CompareLayout::Difference(difference) => {
             let all = [Difference::Signed, Difference::Absolute, Difference::Relative];
             let choices = [
                 ("Signed", "B - A: orange where B is brighter, blue where it is darker."),
@@ -180,7 +185,7 @@ fn finer(ui: &mut Ui, layout: &mut Layout, of_two: bool) {
             ];
             pick(ui, difference, all, choices);
         }
-        Layout::Noise(noise) => {
+        CompareLayout::Noise(noise) => {
             let all = [Noise::Of(Side::A), Noise::Of(Side::B), Noise::Ratio];
             let choices = [
                 ("A", "The noise of A."),
@@ -189,7 +194,7 @@ fn finer(ui: &mut Ui, layout: &mut Layout, of_two: bool) {
             ];
             pick(ui, noise, all, choices);
         }
-        Layout::Error(measure, side) => {
+        CompareLayout::Error(measure, side) => {
             let choices = [
                 ("Squared error", "In linear light, relative to the reference squared: relMSE."),
                 ("FLIP map", "What somebody notices who flips between the displayed pictures."),

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use egui::Context;
 use glam::UVec2;
 
-pub use load::{Held, Origin};
+pub use load::{LoadedReference, ReferenceOrigin};
 
 use super::maps::{Map, MapKind};
 use super::noise_plot::Plotted;
@@ -66,13 +66,13 @@ impl Measure {
 
 /// What is measured: one picture, or those of A and B.
 #[derive(Clone)]
-struct Task {
-    held: Arc<Held>,
+struct MeasureTask {
+    held: Arc<LoadedReference>,
     pictures: Vec<Arc<Picture>>,
     tone: Tone,
 }
 
-impl Task {
+impl MeasureTask {
     fn same(&self, other: &Self) -> bool {
         let pairs = || std::iter::zip(&self.pictures, &other.pictures);
         self.is_like(other) && pairs().all(|(a, b)| Arc::ptr_eq(a, b))
@@ -85,19 +85,19 @@ impl Task {
             && self.pictures.len() == other.pictures.len()
     }
 
-    fn measure(&self) -> Measured {
+    fn measure(&self) -> MeasureResult {
         let begun = Instant::now();
         let pixels: Vec<&[[f32; 4]]> =
             self.pictures.iter().map(|picture| picture.pixels.as_slice()).collect();
         let viewing = Viewing { tone: self.tone, ..Viewing::default() };
         let errors = Errors::of(&pixels, &self.held.reference, viewing).unwrap_or_default();
-        Measured { errors: Arc::new(errors), took: begun.elapsed(), ended: Instant::now() }
+        MeasureResult { errors: Arc::new(errors), took: begun.elapsed(), ended: Instant::now() }
     }
 }
 
 /// How what is measured is looked at.
 #[derive(Clone, Copy, Debug)]
-pub struct Seen {
+pub struct MeasureView {
     /// How it is shown.
     pub tone: Tone,
     /// The side of the main engine, where there are two.
@@ -109,13 +109,13 @@ pub struct Seen {
 }
 
 /// What came of it; no errors where pictures and reference do not fit together.
-struct Measured {
+struct MeasureResult {
     errors: Arc<Vec<Errors>>,
     took: Duration,
     ended: Instant,
 }
 
-impl Measured {
+impl MeasureResult {
     /// How long nothing should be measured after it.
     fn rest(&self) -> Duration {
         (REST * self.took).saturating_sub(self.ended.elapsed())
@@ -133,16 +133,16 @@ struct MapTask {
 }
 
 /// The reference and what is measured against it.
-pub struct Yardstick {
+pub struct MeasuredReference {
     /// The threads that measure, which give way to the window's.
     pool: Arc<Pool>,
-    held: Option<Arc<Held>>,
+    held: Option<Arc<LoadedReference>>,
     loading: Option<Loading>,
     /// The scene that is open, and the files of the references of it and of others, the one that was
     /// loaded last first.
     scene: String,
-    remembered: Vec<(String, PathBuf)>,
-    errors: Background<Task, Measured>,
+    preferences: Vec<(String, PathBuf)>,
+    errors: Background<MeasureTask, MeasureResult>,
     map: Background<MapTask, Option<Map>>,
     /// How relMSE and FLIP of both sides went down.
     histories: [[NoiseHistory; 2]; 2],
@@ -154,19 +154,19 @@ pub struct Yardstick {
     main: Option<Side>,
 }
 
-impl Yardstick {
+impl MeasuredReference {
     /// Without a reference, but with the files of those of some scenes; `threads` will measure
     /// (`None`: one a core).
     ///
     /// # Errors
     /// When the system refuses to start them.
-    pub fn new(threads: Option<usize>, remembered: Vec<(String, PathBuf)>) -> Result<Self> {
+    pub fn new(threads: Option<usize>, preferences: Vec<(String, PathBuf)>) -> Result<Self> {
         Ok(Self {
             pool: Arc::new(Pool::new(threads, Priority::Background)?),
             held: None,
             loading: None,
             scene: String::new(),
-            remembered,
+            preferences,
             errors: Background::default(),
             map: Background::default(),
             histories: Default::default(),
@@ -178,7 +178,7 @@ impl Yardstick {
     }
 
     /// The reference.
-    pub fn held(&self) -> Option<&Arc<Held>> {
+    pub fn held(&self) -> Option<&Arc<LoadedReference>> {
         self.held.as_ref()
     }
 
@@ -191,7 +191,7 @@ impl Yardstick {
     ///
     /// # Errors
     /// When the system refuses to start a thread.
-    pub fn load(&mut self, ctx: &Context, origin: Origin) -> Result<()> {
+    pub fn load(&mut self, ctx: &Context, origin: ReferenceOrigin) -> Result<()> {
         let wake = ctx.clone();
         self.loading = Some(Loading::start(origin, move || wake.request_repaint())?);
         Ok(())
@@ -204,15 +204,15 @@ impl Yardstick {
     }
 
     /// The files of the references of scenes, the one that was loaded last first.
-    pub fn remembered(&self) -> &[(String, PathBuf)] {
-        &self.remembered
+    pub fn preferences(&self) -> &[(String, PathBuf)] {
+        &self.preferences
     }
 
     fn remember(&mut self, file: Option<&Path>) {
-        self.remembered.retain(|(scene, _)| *scene != self.scene);
+        self.preferences.retain(|(scene, _)| *scene != self.scene);
         if let Some(file) = file {
             let file = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
-            self.remembered.insert(0, (self.scene.clone(), file));
+            self.preferences.insert(0, (self.scene.clone(), file));
         }
     }
 
@@ -233,8 +233,8 @@ impl Yardstick {
         }
         self.forget();
         scene.clone_into(&mut self.scene);
-        match self.remembered.iter().find(|(other, _)| other == scene) {
-            Some((_, path)) => self.load(ctx, Origin::file(path.clone())),
+        match self.preferences.iter().find(|(other, _)| other == scene) {
+            Some((_, path)) => self.load(ctx, ReferenceOrigin::file(path.clone())),
             None => Ok(()),
         }
     }
@@ -256,7 +256,7 @@ impl Yardstick {
     }
 
     /// Brings the errors in line with what is looked at, one picture or those of A and B.
-    pub fn update(&mut self, ctx: &Context, pictures: Vec<Arc<Picture>>, seen: Seen) {
+    pub fn update(&mut self, ctx: &Context, pictures: Vec<Arc<Picture>>, seen: MeasureView) {
         match (std::mem::replace(&mut self.main, seen.main), seen.main) {
             (then, now) if then == now => {}
             (Some(_), Some(_)) => self.histories.swap(0, 1),
@@ -269,16 +269,16 @@ impl Yardstick {
         let fits = |picture: &Arc<Picture>| !self.is_of_another_size(picture.size);
         let has_all = !pictures.is_empty() && pictures.iter().all(fits);
         let task = self.held.clone().filter(|_| has_all);
-        let task = task.map(|held| Task { held, pictures, tone });
+        let task = task.map(|held| MeasureTask { held, pictures, tone });
         let task = task.and_then(|task| self.in_time(ctx, task));
         let (wake, pool) = (ctx.clone(), self.pool.clone());
-        let measure = move |task: &Task| pool.install(|| task.measure());
-        self.errors.update(task, Task::same, measure, move || wake.request_repaint());
+        let measure = move |task: &MeasureTask| pool.install(|| task.measure());
+        self.errors.update(task, MeasureTask::same, measure, move || wake.request_repaint());
         self.note(seen);
     }
 
     /// What should be measured now: `task`, or what was measured last while that rests.
-    fn in_time(&self, ctx: &Context, task: Task) -> Option<Task> {
+    fn in_time(&self, ctx: &Context, task: MeasureTask) -> Option<MeasureTask> {
         let done = self.errors.done().filter(|(done, _)| done.is_like(&task));
         let is_rough = task.pictures.iter().any(|picture| !picture.complete);
         match done {
@@ -293,7 +293,7 @@ impl Yardstick {
     }
 
     /// Adds new errors to the histories. A snapshot has no past: one that is a side is a point.
-    fn note(&mut self, seen: Seen) {
+    fn note(&mut self, seen: MeasureView) {
         let Some((task, measured)) = self.errors.done() else { return };
         if self.noted.replace(measured.ended) == Some(measured.ended) || seen.is_snapshot {
             return;

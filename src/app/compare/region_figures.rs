@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::render::compare::{Comparison, Side};
+use crate::render::compare::{Comparison, SideFigures};
 use crate::render::{Area, Picture};
 
 /// One picture or those of A and B, and the rectangle.
@@ -25,16 +25,16 @@ impl PartTask {
 }
 
 /// What is known of it.
-pub struct Part {
+pub struct RegionFigures {
     /// The rectangle.
     pub area: Area,
     /// The figures of the one picture, or of A and B.
-    pub sides: Vec<Side>,
+    pub sides: Vec<SideFigures>,
     /// How those two compare.
     pub comparison: Option<Comparison>,
 }
 
-impl Part {
+impl RegionFigures {
     /// Looks at the rectangle.
     pub fn of(task: &PartTask) -> Self {
         let area = task.area;
@@ -44,7 +44,7 @@ impl Part {
                 Self { area, sides: comparison.sides.to_vec(), comparison: Some(comparison) }
             }
             pictures => {
-                let side = |picture: &Arc<Picture>| Side::of_picture(picture, Some(area));
+                let side = |picture: &Arc<Picture>| SideFigures::of_picture(picture, Some(area));
                 Self { area, sides: pictures.iter().map(side).collect(), comparison: None }
             }
         }

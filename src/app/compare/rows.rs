@@ -6,9 +6,9 @@ use glam::UVec2;
 use super::figures::{Column, names, of_errors, of_part};
 use super::panel;
 use crate::app::command::Command;
-use crate::app::compare::reference::Yardstick;
-use crate::app::compare::region_figures::Part;
-use crate::app::picture::region::Rectangle;
+use crate::app::compare::reference::MeasuredReference;
+use crate::app::compare::region_figures::RegionFigures;
+use crate::app::picture::region::PictureRegion;
 use crate::app::ui::theme::{color, space};
 use crate::app::ui::widgets::key_of;
 use crate::image::metrics::Errors;
@@ -28,33 +28,33 @@ pub enum Asked {
 }
 
 /// Shows the rectangle on pictures of `size` and what is known of it; `biased` says which sides are.
-pub fn rectangle(
+pub fn region(
     ui: &mut Ui,
-    rectangle: &mut Rectangle,
+    region: &mut PictureRegion,
     size: UVec2,
-    (part, errors, biased): (Option<&Part>, Option<&[Errors]>, [bool; 2]),
+    (part, errors, biased): (Option<&RegionFigures>, Option<&[Errors]>, [bool; 2]),
 ) {
-    let Some(area) = rectangle.area(size) else {
+    let Some(area) = region.area(size) else {
         ui.label(RichText::new("Drag a rectangle over the picture.").color(color::ACCENT));
         let help = "Put it into the middle, from where numbers move it.";
         if ui.button("Place it").on_hover_text(help).clicked() {
-            rectangle.set(Area { first: size / 3, size: size / 3 }, size);
+            region.set(Area { first: size / 3, size: size / 3 }, size);
         }
         if ui.button("Cancel").on_hover_text("Draw none.  [Esc]").clicked() {
-            rectangle.remove();
+            region.remove();
         }
         return;
     };
     ui.label(RichText::new("Rectangle").color(color::TEXT_STRONG));
     if let Some(area) = fields(ui, area, size) {
-        rectangle.set(area, size);
+        region.set(area, size);
     }
     if ui.button("Remove").on_hover_text("Take the rectangle away.  [Esc]").clicked() {
-        rectangle.remove();
+        region.remove();
     }
     let alone = Command::SamplesHere;
     let help = format!("{}  [{}]", alone.tooltip(), key_of(ui, alone));
-    ui.toggle_value(&mut rectangle.is_alone, "Samples only here").on_hover_text(help);
+    ui.toggle_value(&mut region.is_alone, "Samples only here").on_hover_text(help);
     let Some(part) = part else { return };
     match &part.comparison {
         Some(comparison) => panel::verdict(ui, Some(comparison), biased),
@@ -119,12 +119,12 @@ fn take_size(ui: &mut Ui, size: UVec2) -> Option<Asked> {
 /// Shows the reference for pictures of `size`, rendered with `settings`, and how far off they are.
 pub fn reference(
     ui: &mut Ui,
-    yardstick: &Yardstick,
+    reference: &MeasuredReference,
     (size, settings): (UVec2, &Settings),
 ) -> Option<Asked> {
     let mut asked = None;
     ui.label(RichText::new("Reference").color(color::TEXT_STRONG));
-    let Some(held) = yardstick.held() else {
+    let Some(held) = reference.held() else {
         ui.label(RichText::new("Loading …").color(color::ACCENT));
         return None;
     };
@@ -135,7 +135,7 @@ pub fn reference(
     if ui.button("Remove").on_hover_text(help).clicked() {
         asked = Some(Asked::Command(remove));
     }
-    if yardstick.is_of_another_size(size) {
+    if reference.is_of_another_size(size) {
         let text =
             format!("It has {} × {} pixels and the picture {} × {}.", of.x, of.y, size.x, size.y);
         ui.label(RichText::new(text).color(color::WARNING));
@@ -146,7 +146,7 @@ pub fn reference(
         ui.label(RichText::new(text).color(color::WARNING))
             .on_hover_text("The reference is known to show something else than this picture.");
     }
-    match yardstick.errors() {
+    match reference.errors() {
         Some(errors) => told(ui, &of_errors(errors, None)),
         None => {
             ui.label(RichText::new("Measuring …").color(color::TEXT_DIM));

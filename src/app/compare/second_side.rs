@@ -8,10 +8,10 @@ use glam::UVec2;
 
 use super::maps::{Difference, Map, MapKind, Noise};
 use super::reference::Measure;
-use super::region_figures::{Part, PartTask};
+use super::region_figures::{PartTask, RegionFigures};
 use crate::app::document::{Compared, Document, Side};
 use crate::app::jobs::background::Background;
-use crate::app::jobs::live_render::{Engine, News};
+use crate::app::jobs::live_render::{LiveRender, News};
 use crate::app::picture::display::Look;
 use crate::app::picture::viewport::Shown;
 use crate::error::Result;
@@ -24,7 +24,7 @@ pub const FLIP: Key = Key::H;
 
 /// How A and B are shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Layout {
+pub enum CompareLayout {
     /// One over the other, with a divider.
     #[default]
     Wipe,
@@ -38,7 +38,7 @@ pub enum Layout {
     Error(Measure, Side),
 }
 
-impl Layout {
+impl CompareLayout {
     /// One of each kind; the last one needs a reference.
     pub const ALL: [Self; 5] = [
         Self::Wipe,
@@ -89,7 +89,7 @@ impl Layout {
 
 /// A picture kept earlier, as one side against the live one.
 #[derive(Clone, Debug)]
-pub struct Stored {
+pub struct StoredSide {
     /// The side.
     pub side: Side,
     /// What it is called.
@@ -101,22 +101,22 @@ pub struct Stored {
 }
 
 /// The second side and what is shown of both.
-pub struct Duel {
-    rival: Option<Engine>,
+pub struct SecondSide {
+    second_render: Option<LiveRender>,
     /// A picture kept earlier in place of the second side.
-    pub stored: Option<Stored>,
+    pub stored: Option<StoredSide>,
     /// The comparison of the last frame.
     last: Option<Compared>,
     /// Of the two sessions while there are two.
     seats: [Seat; 2],
     threads: Option<usize>,
     /// How both are shown.
-    pub layout: Layout,
+    pub layout: CompareLayout,
     /// Where B begins, as a share of the picture area's width.
     pub divider: f32,
-    map: Background<Pair, Option<Map>>,
+    map: Background<BothPictures, Option<Map>>,
     figures: Background<[Arc<Picture>; 2], Comparison>,
-    part: Background<PartTask, Part>,
+    part: Background<PartTask, RegionFigures>,
     /// How the noise of A and of B went down.
     histories: [NoiseHistory; 2],
     /// The side of the main engine when they were last added to.
@@ -125,28 +125,28 @@ pub struct Duel {
 
 /// Both pictures, and what is to be made of them.
 #[derive(Clone)]
-struct Pair {
+struct BothPictures {
     pictures: [Arc<Picture>; 2],
     kind: MapKind,
 }
 
-impl Pair {
+impl BothPictures {
     fn same(&self, other: &Self) -> bool {
         let same = |i: usize| Arc::ptr_eq(&self.pictures[i], &other.pictures[i]);
         self.kind == other.kind && same(0) && same(1)
     }
 }
 
-impl Duel {
+impl SecondSide {
     /// None yet; the second side will have `threads` workers.
     pub fn new(threads: Option<usize>) -> Self {
         Self {
-            rival: None,
+            second_render: None,
             stored: None,
             last: None,
             seats: Sharing::seats(),
             threads,
-            layout: Layout::default(),
+            layout: CompareLayout::default(),
             divider: 0.5,
             map: Background::default(),
             figures: Background::default(),
@@ -164,60 +164,60 @@ impl Duel {
 
     /// Whether there are two sides.
     pub fn is_on(&self) -> bool {
-        self.rival.is_some() || self.stored.is_some()
+        self.second_render.is_some() || self.stored.is_some()
     }
 
     /// The engine of the side that the main one does not render, while there is one.
-    pub fn rival(&self) -> Option<&Engine> {
-        self.rival.as_ref()
+    pub fn second_render(&self) -> Option<&LiveRender> {
+        self.second_render.as_ref()
     }
 
     /// The engine of the side that is edited, `main` being that of the main side.
-    pub fn edited<'e>(&'e self, main: &'e Engine) -> &'e Engine {
-        match (&self.rival, self.last) {
-            (Some(rival), Some(last)) if last.active != last.main => rival,
+    pub fn edited<'e>(&'e self, main: &'e LiveRender) -> &'e LiveRender {
+        match (&self.second_render, self.last) {
+            (Some(second_render), Some(last)) if last.active != last.main => second_render,
             _ => main,
         }
     }
 
     /// How many sides take turns at the machine, `main` being the engine of the main side.
-    pub fn turns(&self, main: &Engine) -> usize {
+    pub fn turns(&self, main: &LiveRender) -> usize {
         let is_at_work =
-            |engine: &&Engine| engine.picture().is_none_or(|picture| !picture.stats.finished);
-        std::iter::once(main).chain(self.rival()).filter(is_at_work).count()
+            |engine: &&LiveRender| engine.picture().is_none_or(|picture| !picture.stats.finished);
+        std::iter::once(main).chain(self.second_render()).filter(is_at_work).count()
     }
 
     /// Lets it wait for something else, or go on.
     pub fn set_held(&mut self, held: bool) {
-        if let Some(rival) = &mut self.rival {
-            rival.set_held(held);
+        if let Some(second_render) = &mut self.second_render {
+            second_render.set_held(held);
         }
     }
 
     /// Gives all its samples to the pixels of `area`, or to all pixels.
     pub fn focus(&mut self, area: Option<Area>) {
-        if let Some(rival) = &mut self.rival {
-            rival.focus(area);
+        if let Some(second_render) = &mut self.second_render {
+            second_render.focus(area);
         }
     }
 
     /// Lets its pictures bring a layer along.
     pub fn set_layer(&mut self, layer: Option<Layer>) {
-        if let Some(rival) = &mut self.rival {
-            rival.set_layer(layer);
+        if let Some(second_render) = &mut self.second_render {
+            second_render.set_layer(layer);
         }
     }
 
     /// Throws its samples away.
     pub fn restart(&mut self) {
-        if let Some(rival) = &mut self.rival {
-            rival.restart();
+        if let Some(second_render) = &mut self.second_render {
+            second_render.restart();
         }
     }
 
     /// Takes in what its threads have done.
     pub fn poll(&mut self) -> Vec<News> {
-        self.rival.as_mut().map_or_else(Vec::new, Engine::poll)
+        self.second_render.as_mut().map_or_else(Vec::new, LiveRender::poll)
     }
 
     /// Brings the other side in line with the document on a film of `size`, and both sides' turns at
@@ -229,7 +229,7 @@ impl Duel {
         &mut self,
         ctx: &Context,
         document: &Document,
-        engine: &mut Engine,
+        engine: &mut LiveRender,
         size: UVec2,
     ) -> Result<Vec<News>> {
         let mut news = Vec::new();
@@ -239,24 +239,25 @@ impl Duel {
             return Ok(news);
         };
         self.last = Some(compared);
-        if self.rival.is_none() {
+        if self.second_render.is_none() {
             if engine.built().is_none() {
                 return Ok(news);
             }
             let wake = ctx.clone();
-            let rival = engine.rival(self.threads, move || wake.request_repaint())?;
-            rival.session().take_seat(Some(self.seats[1].clone()));
+            let second_render =
+                engine.second_render(self.threads, move || wake.request_repaint())?;
+            second_render.session().take_seat(Some(self.seats[1].clone()));
             engine.session().take_seat(Some(self.seats[0].clone()));
-            self.rival = Some(rival);
+            self.second_render = Some(second_render);
         }
         self.seats[0].set_share(compared.share);
         let settings = document.settings_of(compared.main.other());
-        if let Some(rival) = &mut self.rival {
-            rival.set_shows_variance(true);
-            if rival.paused() != engine.paused() {
-                rival.set_paused(engine.paused());
+        if let Some(second_render) = &mut self.second_render {
+            second_render.set_shows_variance(true);
+            if second_render.paused() != engine.paused() {
+                second_render.set_paused(engine.paused());
             }
-            if let Some(wait) = rival.update(&settings, size, &mut news) {
+            if let Some(wait) = second_render.update(&settings, size, &mut news) {
                 ctx.request_repaint_after(wait);
             }
         }
@@ -265,31 +266,32 @@ impl Duel {
     }
 
     /// Brings map and figures in line with the pictures.
-    fn update_told(&mut self, ctx: &Context, engine: &Engine) {
+    fn update_told(&mut self, ctx: &Context, engine: &LiveRender) {
         self.update_map(ctx, engine);
         self.update_figures(ctx, engine);
     }
 
     /// Ends a comparison. Not where another scene was opened: that goes on where it was.
-    fn end(&mut self, document: &Document, engine: &mut Engine) {
+    fn end(&mut self, document: &Document, engine: &mut LiveRender) {
         let last = self.last.take();
-        let Some(mut rival) = self.rival.take() else { return };
+        let Some(mut second_render) = self.second_render.take() else { return };
         let edited = last.is_some_and(|last| last.active != last.main);
-        if edited && rival.renders(&document.settings) {
-            std::mem::swap(engine, &mut rival);
+        if edited && second_render.renders(&document.settings) {
+            std::mem::swap(engine, &mut second_render);
         }
         engine.session().take_seat(None);
     }
 
-    fn update_map(&mut self, ctx: &Context, engine: &Engine) {
+    fn update_map(&mut self, ctx: &Context, engine: &LiveRender) {
         let pictures = self.pictures(engine);
-        let pair = self.layout.map().zip(pictures).map(|(kind, pictures)| Pair { pictures, kind });
+        let pair =
+            self.layout.map().zip(pictures).map(|(kind, pictures)| BothPictures { pictures, kind });
         let wake = ctx.clone();
-        let make = |pair: &Pair| Map::new(pair.kind, &pair.pictures);
-        self.map.update(pair, Pair::same, make, move || wake.request_repaint());
+        let make = |pair: &BothPictures| Map::new(pair.kind, &pair.pictures);
+        self.map.update(pair, BothPictures::same, make, move || wake.request_repaint());
     }
 
-    fn update_figures(&mut self, ctx: &Context, engine: &Engine) {
+    fn update_figures(&mut self, ctx: &Context, engine: &LiveRender) {
         let pictures =
             self.pictures(engine).filter(|pictures| pictures[0].size == pictures[1].size);
         self.note(pictures.as_ref());
@@ -328,11 +330,11 @@ impl Duel {
     pub fn update_part(&mut self, ctx: &Context, pictures: Vec<Arc<Picture>>, area: Option<Area>) {
         let task = area.map(|area| PartTask { pictures, area });
         let wake = ctx.clone();
-        self.part.update(task, PartTask::same, Part::of, move || wake.request_repaint());
+        self.part.update(task, PartTask::same, RegionFigures::of, move || wake.request_repaint());
     }
 
     /// What is known of the rectangle, once it is.
-    pub fn part(&self) -> Option<&Part> {
+    pub fn part(&self) -> Option<&RegionFigures> {
         self.part.done().map(|(_, part)| part)
     }
 
@@ -347,13 +349,13 @@ impl Duel {
     }
 
     /// The pictures of A and B, once both have one.
-    pub fn pictures(&self, engine: &Engine) -> Option<[Arc<Picture>; 2]> {
+    pub fn pictures(&self, engine: &LiveRender) -> Option<[Arc<Picture>; 2]> {
         let main = engine.picture()?.clone();
         let (other, main_is_a) = match &self.stored {
             Some(stored) => (stored.picture.clone()?, stored.side == Side::B),
             None => {
-                let rival = self.rival.as_ref()?.picture()?.clone();
-                (rival, self.last.is_some_and(|compared| compared.main == Side::A))
+                let second_render = self.second_render.as_ref()?.picture()?.clone();
+                (second_render, self.last.is_some_and(|compared| compared.main == Side::A))
             }
         };
         Some(if main_is_a { [main, other] } else { [other, main] })
@@ -380,8 +382,8 @@ impl Duel {
             return Shown::One(other, look);
         }
         match (self.layout, map) {
-            (Layout::Wipe, _) => Shown::Wipe(pictures, look, self.divider),
-            (Layout::Beside, _) => Shown::Beside(pictures, look),
+            (CompareLayout::Wipe, _) => Shown::Wipe(pictures, look, self.divider),
+            (CompareLayout::Beside, _) => Shown::Beside(pictures, look),
             (_, Some(map)) => Shown::One(map.picture.clone(), map.look),
             (_, None) => {
                 let [_, b] = pictures;

@@ -10,7 +10,7 @@ use crate::math::Aabb;
 use crate::transport::Scene;
 use crate::transport::probes::Probes;
 use crate::volume::world::Instance;
-use crate::volume::{Bounds, Region};
+use crate::volume::{CoefficientBounds, Region};
 
 /// The most cells that are drawn.
 pub const MOST: usize = 4000;
@@ -89,10 +89,10 @@ impl Cells {
 fn visit(instance: &Instance, value: CellValue, mut found: impl FnMut(&Aabb, f32)) {
     let volume = instance.volume();
     match (value, volume.bounds()) {
-        (CellValue::Majorant, Bounds::Cells(grid)) => {
+        (CellValue::Majorant, CoefficientBounds::Cells(grid)) => {
             grid.for_each_cell(|_, cell, majorant| found(cell, majorant.mu_t));
         }
-        (CellValue::Majorant, Bounds::Uniform(_, majorant)) => {
+        (CellValue::Majorant, CoefficientBounds::Uniform(_, majorant)) => {
             if *volume.region() != Region::Everywhere {
                 found(&volume.region().bounds(), majorant.mu_t);
             }
@@ -157,11 +157,11 @@ impl<'a> Sieve<'a> {
 
 /// Gathers cells behind the window's back.
 #[derive(Default)]
-pub struct Gathering(Background<Source, Cells>);
+pub struct Gathering(Background<CellSource, Cells>);
 
 /// What cells are gathered from.
 #[derive(Clone)]
-pub struct Source {
+pub struct CellSource {
     /// What they are colored by.
     pub value: CellValue,
     /// Has the volumes and the camera.
@@ -170,7 +170,7 @@ pub struct Source {
     pub probes: Option<Arc<Probes>>,
 }
 
-impl Source {
+impl CellSource {
     fn gather(&self) -> Cells {
         match self.value {
             CellValue::Probes => match &self.probes {
@@ -197,8 +197,8 @@ impl Source {
 
 impl Gathering {
     /// Brings the cells in line with what is wanted; `wake` is called when they are there.
-    pub fn update(&mut self, wanted: Option<Source>, wake: impl FnOnce() + Send + 'static) {
-        self.0.update(wanted, Source::has_cells_of, Source::gather, wake);
+    pub fn update(&mut self, wanted: Option<CellSource>, wake: impl FnOnce() + Send + 'static) {
+        self.0.update(wanted, CellSource::has_cells_of, CellSource::gather, wake);
     }
 
     /// The cells gathered last, if they are of the value wanted.
@@ -307,7 +307,7 @@ density = { scale = 0.1 }
         let mut source = || {
             let scene = assemble(&settings, &cache, NO_PROGRESS).unwrap();
             let source =
-                Source { value: CellValue::Majorant, scene: Arc::new(scene), probes: None };
+                CellSource { value: CellValue::Majorant, scene: Arc::new(scene), probes: None };
             settings.camera.position[0] += 1.0;
             source
         };
@@ -315,7 +315,7 @@ density = { scale = 0.1 }
         assert!(first.has_cells_of(&second));
         settings.volume[0].translate[2] = 1.0;
         let scene = Arc::new(assemble(&settings, &cache, NO_PROGRESS).unwrap());
-        assert!(!first.has_cells_of(&Source { scene, ..second }));
+        assert!(!first.has_cells_of(&CellSource { scene, ..second }));
     }
 
     /// The probes tile their cube, and score what they scatter towards the eye.
@@ -328,7 +328,7 @@ density = { scale = 0.1 }
         let scene = assemble(&settings, &VolumeCache::default(), NO_PROGRESS).unwrap();
         let probes = Probes::new(&scene).map(Arc::new);
         let scene = Arc::new(scene);
-        let source = Source { value: CellValue::Probes, scene, probes };
+        let source = CellSource { value: CellValue::Probes, scene, probes };
         let mut volume = 0.0;
         let mut count = 0;
         source.probes.as_ref().unwrap().for_each(|probe| {
@@ -347,8 +347,8 @@ density = { scale = 0.1 }
             40.0,
         )
         .unwrap();
-        let moved = Source { scene: Arc::new(moved), ..source.clone() };
+        let moved = CellSource { scene: Arc::new(moved), ..source.clone() };
         assert!(!source.has_cells_of(&moved) && source.has_cells_of(&source.clone()));
-        assert!(!source.has_cells_of(&Source { probes: None, ..source.clone() }));
+        assert!(!source.has_cells_of(&CellSource { probes: None, ..source.clone() }));
     }
 }

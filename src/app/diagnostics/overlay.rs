@@ -43,7 +43,7 @@ const EDGES: [(usize, usize); 12] = [
 pub fn paint(ui: &Ui, view: View, camera: &Camera, cells: &Cells, scale: Scale) {
     let rect = picture_rect(&view, view.size);
     let painter = ui.painter_at(rect);
-    let canvas = Canvas { view, camera, size: view.size };
+    let canvas = OverlayCanvas { view, camera, size: view.size };
     if cells.strongest.len() <= MOST_BOXES {
         cells.strongest.iter().for_each(|cell| canvas.draw_box(&painter, cell, scale));
     } else {
@@ -55,14 +55,14 @@ pub fn paint(ui: &Ui, view: View, camera: &Camera, cells: &Cells, scale: Scale) 
     }
 }
 
-struct Canvas<'a> {
+struct OverlayCanvas<'a> {
     view: View,
     camera: &'a Camera,
     /// Of the picture in pixels.
     size: UVec2,
 }
 
-impl Canvas<'_> {
+impl OverlayCanvas<'_> {
     fn draw_box(&self, painter: &Painter, cell: &Cell, scale: Scale) {
         let corners = cell.corners.map(|corner| self.camera.view_from_world(corner));
         let stroke = Stroke::new(LINE, ramp_color::color(scale.place(cell.value)));

@@ -3,10 +3,10 @@
 use egui::{RichText, Stroke, Ui};
 use egui_plot::{GridMark, Line, Plot, PlotPoints, PlotUi, VLine, uniform_grid_spacer};
 
-use super::ray::{Curve, DENSITIES, SHARES};
+use super::ray::{DENSITIES, RayCurve, SHARES};
 use crate::app::ui::theme::color;
 use crate::app::ui::widgets::significant;
-use crate::transport::profile::Row;
+use crate::transport::profile::ProfileRow;
 
 /// Width of a plot in points, and its height without the axis below.
 const SIZE: egui::Vec2 = egui::vec2(290.0, 112.0);
@@ -20,7 +20,7 @@ const GRID: std::ops::RangeInclusive<f32> = 12.0..=30.0;
 const LINES: f64 = 5.0;
 
 /// Shows both with a mark at distance `at`; gives the distance under the pointer.
-pub fn show(ui: &mut Ui, rows: &[Row], at: f32) -> Option<f32> {
+pub fn show(ui: &mut Ui, rows: &[ProfileRow], at: f32) -> Option<f32> {
     let densities = plot(ui, "Densities along the ray", ["", "1/length"], at, |plot| {
         for curve in &DENSITIES {
             plot.line(line(curve, rows, 1.0));
@@ -37,8 +37,8 @@ pub fn show(ui: &mut Ui, rows: &[Row], at: f32) -> Option<f32> {
     densities.or(shares)
 }
 
-fn line<'a>(curve: &Curve, rows: &[Row], scale: f32) -> Line<'a> {
-    let point = |row: &Row| [f64::from(row.t), f64::from(scale * (curve.value)(row))];
+fn line<'a>(curve: &RayCurve, rows: &[ProfileRow], scale: f32) -> Line<'a> {
+    let point = |row: &ProfileRow| [f64::from(row.t), f64::from(scale * (curve.value)(row))];
     let points: PlotPoints<'a> = rows.iter().map(point).collect();
     Line::new(curve.name, points).color(curve.color).width(1.6).allow_hover(false)
 }

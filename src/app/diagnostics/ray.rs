@@ -7,12 +7,12 @@ use glam::{UVec2, Vec2};
 
 use super::plots;
 use crate::app::jobs::background::Background;
-use crate::app::jobs::live_render::Engine;
+use crate::app::jobs::live_render::LiveRender;
 use crate::app::picture::viewport::View;
 use crate::app::ui::theme::{color, space};
 use crate::app::ui::widgets::significant;
 use crate::transport::probes::Probes;
-use crate::transport::profile::{Profile, Row};
+use crate::transport::profile::{Profile, ProfileRow};
 use crate::transport::{Frame, Scene};
 
 /// Rows of the table behind the curves.
@@ -25,7 +25,7 @@ const COLUMNS: [f32; 2] = [110.0, 50.0];
 const ROW: f32 = 15.0;
 
 /// A curve as the legend explains it.
-pub struct Curve {
+pub struct RayCurve {
     /// What it shows.
     pub name: &'static str,
     /// The unit of its values.
@@ -35,26 +35,26 @@ pub struct Curve {
     /// Its color.
     pub color: Color32,
     /// Its value in a row.
-    pub value: fn(&Row) -> f32,
+    pub value: fn(&ProfileRow) -> f32,
 }
 
 /// The curves over 1/length.
-pub const DENSITIES: [Curve; 3] = [
-    Curve {
+pub const DENSITIES: [RayCurve; 3] = [
+    RayCurve {
         name: "Extinction",
         unit: "1/length",
         help: "μ_t: how much the medium takes from a ray per length, by absorbing and scattering.",
         color: color::CURVE,
         value: |row| row.mu_t,
     },
-    Curve {
+    RayCurve {
         name: "Drawn by chance",
         unit: "1/length",
         help: "p_null = μ_t T: the density with which null-collision tracking scatters here.",
         color: color::CURVE_CHANCE,
         value: |row| row.p_null,
     },
-    Curve {
+    RayCurve {
         name: "Drawn by probes",
         unit: "1/length",
         help: "p_select: the density with which probes and equal angles scatter here.",
@@ -64,29 +64,29 @@ pub const DENSITIES: [Curve; 3] = [
 ];
 
 /// The curves from 0 to 1; the emission as a share of its peak.
-pub const SHARES: [Curve; 4] = [
-    Curve {
+pub const SHARES: [RayCurve; 4] = [
+    RayCurve {
         name: "Transmittance",
         unit: "",
         help: "T: the share of light that comes through from here to the camera.",
         color: color::CURVE,
         value: |row| row.transmittance,
     },
-    Curve {
+    RayCurve {
         name: "Emission",
         unit: "radiance/length",
         help: "ε: the radiance that the medium emits per length. Its curve is a share of its peak.",
         color: color::CURVE_GLOW,
         value: |row| row.emission,
     },
-    Curve {
+    RayCurve {
         name: "Weight of chance",
         unit: "",
         help: "The MIS weight of scattering that null-collision tracking finds here.",
         color: color::CURVE_CHANCE,
         value: |row| row.weight_null,
     },
-    Curve {
+    RayCurve {
         name: "Weight of probes",
         unit: "",
         help: "The MIS weight of scattering that probes and equal angles find here.",
@@ -97,7 +97,7 @@ pub const SHARES: [Curve; 4] = [
 
 /// What the ray is looked into with.
 #[derive(Clone)]
-struct Source {
+struct RayScene {
     scene: Arc<Scene>,
     probes: Option<Arc<Probes>>,
     pixel: UVec2,
@@ -105,7 +105,7 @@ struct Source {
     size: UVec2,
 }
 
-impl Source {
+impl RayScene {
     fn same(&self, other: &Self) -> bool {
         self.same_picture(other) && self.pixel == other.pixel
     }
@@ -141,14 +141,14 @@ struct Found {
 pub struct Inspector {
     /// Where in the picture, in shares of its sides.
     picked: Option<Vec2>,
-    profile: Background<Source, Found>,
+    profile: Background<RayScene, Found>,
     /// The distance whose values are read.
     at: Option<f32>,
 }
 
 impl Inspector {
     /// Brings the table in line with pixel and scene; forgets both unless `wanted`.
-    pub fn update(&mut self, ctx: &Context, wanted: bool, engine: &Engine) {
+    pub fn update(&mut self, ctx: &Context, wanted: bool, engine: &LiveRender) {
         if !wanted {
             *self = Self::default();
             return;
@@ -157,14 +157,14 @@ impl Inspector {
         let built = engine.built().map(|built| built.scene.clone());
         let source = self.picked.zip(size).zip(built).map(|((picked, size), scene)| {
             let pixel = (picked * size.as_vec2()).as_uvec2().min(size - UVec2::ONE);
-            Source { scene, probes: engine.probes(), pixel, size }
+            RayScene { scene, probes: engine.probes(), pixel, size }
         });
         let known =
             source.as_ref().zip(self.profile.done()).and_then(|(source, (other, found))| {
                 source.same_picture(other).then(|| found.frame.clone())
             });
-        let (make, wake) = (move |source: &Source| source.found(known), ctx.clone());
-        self.profile.update(source, Source::same, make, move || wake.request_repaint());
+        let (make, wake) = (move |source: &RayScene| source.found(known), ctx.clone());
+        self.profile.update(source, RayScene::same, make, move || wake.request_repaint());
     }
 
     /// Picks the pixel that is clicked, marks it and shows what lies along its ray; whether to go
@@ -223,8 +223,8 @@ impl Inspector {
 }
 
 /// The distance where most is drawn, or else most glows.
-fn most_telling(rows: &[Row]) -> f32 {
-    let by = |value: fn(&Row) -> f32| {
+fn most_telling(rows: &[ProfileRow]) -> f32 {
+    let by = |value: fn(&ProfileRow) -> f32| {
         let most = rows.iter().max_by(|a, b| value(a).total_cmp(&value(b)));
         most.filter(|row| value(row) > 0.0).map(|row| row.t)
     };
@@ -235,13 +235,13 @@ fn most_telling(rows: &[Row]) -> f32 {
 }
 
 /// The row nearest to a distance.
-fn row_at(rows: &[Row], t: f32) -> Row {
+fn row_at(rows: &[ProfileRow], t: f32) -> ProfileRow {
     let nearest = rows.iter().min_by(|a, b| (a.t - t).abs().total_cmp(&(b.t - t).abs()));
     nearest.copied().unwrap_or_default()
 }
 
 /// The legend, with the values of one row.
-fn readout(ui: &mut Ui, row: Row) {
+fn readout(ui: &mut Ui, row: ProfileRow) {
     ui.spacing_mut().item_spacing = vec2(space::ROW, 2.0);
     let distance = format!("At distance {}", significant(f64::from(row.t)));
     ui.label(RichText::new(distance).color(color::TEXT_STRONG));
@@ -257,7 +257,7 @@ fn readout(ui: &mut Ui, row: Row) {
     }
 }
 
-fn entry(ui: &mut Ui, curve: &Curve, value: f32) {
+fn entry(ui: &mut Ui, curve: &RayCurve, value: f32) {
     ui.horizontal(|ui| {
         ui.set_min_width(COLUMNS[0]);
         let (swatch, _) = ui.allocate_exact_size(vec2(12.0, 14.0), Sense::empty());

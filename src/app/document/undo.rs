@@ -10,12 +10,12 @@ pub struct Gesture(pub u64);
 /// The states before and after the present one.
 #[derive(Debug)]
 pub struct History<T> {
-    undo: Vec<Entry<T>>,
-    redo: Vec<Entry<T>>,
+    undo: Vec<UndoStep<T>>,
+    redo: Vec<UndoStep<T>>,
 }
 
 #[derive(Debug)]
-struct Entry<T> {
+struct UndoStep<T> {
     name: String,
     gesture: Gesture,
     /// The state on the other side of the edit.
@@ -39,7 +39,7 @@ impl<T> History<T> {
         if self.undo.len() == LIMIT {
             self.undo.remove(0);
         }
-        self.undo.push(Entry { name: name.to_owned(), gesture, state: before });
+        self.undo.push(UndoStep { name: name.to_owned(), gesture, state: before });
     }
 
     /// Takes the last edit back: the state before it, given the present one.
@@ -65,7 +65,7 @@ impl<T> History<T> {
 
 /// Moves the last entry of `from` to `to`, exchanging its state with the present one; gives the
 /// present state back as an error where there is nothing to move.
-fn step<T>(from: &mut Vec<Entry<T>>, to: &mut Vec<Entry<T>>, present: T) -> Result<T, T> {
+fn step<T>(from: &mut Vec<UndoStep<T>>, to: &mut Vec<UndoStep<T>>, present: T) -> Result<T, T> {
     let Some(mut entry) = from.pop() else { return Err(present) };
     let state = std::mem::replace(&mut entry.state, present);
     to.push(entry);

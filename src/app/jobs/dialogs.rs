@@ -75,7 +75,7 @@ pub enum Dialogs {
 
 /// What came of a system dialog.
 #[derive(Debug, PartialEq, Eq)]
-pub enum Answer {
+pub enum DialogAnswer {
     /// A path was chosen.
     Chosen(Purpose, PathBuf),
     /// The dialog could not be shown, so the path has to be typed.
@@ -90,7 +90,7 @@ const UNSEEN: Duration = Duration::from_millis(400);
 /// A system dialog under way.
 #[derive(Debug)]
 pub struct Dialog {
-    answer: mpsc::Receiver<Answer>,
+    answer: mpsc::Receiver<DialogAnswer>,
 }
 
 impl Dialog {
@@ -111,9 +111,9 @@ impl Dialog {
                 false => dialog.save_file(),
             };
             let answer = match choice {
-                Some(path) => Answer::Chosen(purpose, purpose.complete(path, &name)),
-                None if asked.elapsed() < UNSEEN => Answer::Unavailable(purpose),
-                None => Answer::Cancelled,
+                Some(path) => DialogAnswer::Chosen(purpose, purpose.complete(path, &name)),
+                None if asked.elapsed() < UNSEEN => DialogAnswer::Unavailable(purpose),
+                None => DialogAnswer::Cancelled,
             };
             // Nobody listens any more where the window was closed meanwhile.
             let _ = sender.send(answer);
@@ -123,11 +123,11 @@ impl Dialog {
     }
 
     /// The answer, once there is one.
-    pub fn poll(&self) -> Option<Answer> {
+    pub fn poll(&self) -> Option<DialogAnswer> {
         match self.answer.try_recv() {
             Ok(answer) => Some(answer),
             Err(mpsc::TryRecvError::Empty) => None,
-            Err(mpsc::TryRecvError::Disconnected) => Some(Answer::Cancelled),
+            Err(mpsc::TryRecvError::Disconnected) => Some(DialogAnswer::Cancelled),
         }
     }
 }

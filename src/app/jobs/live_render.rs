@@ -6,8 +6,10 @@ use std::time::{Duration, Instant};
 
 use glam::UVec2;
 
-use super::probe_placer::Prober;
-use super::scene_loader::{Built, Grids, Job, Loader, Outcome, Report, Start};
+use super::probe_placer::ProbePlacer;
+use super::scene_loader::{
+    BuiltScene, Grids, LoadJob, LoadOutcome, LoadReport, Loader, RenderStart,
+};
 use crate::app::ui::notices::Notice;
 use crate::error::{Error, Result};
 use crate::render::publish::Extras;
@@ -44,13 +46,13 @@ pub enum News {
 }
 
 /// The loader and the session, and what they are at.
-pub struct Engine {
+pub struct LiveRender {
     loader: Loader,
     /// The volumes, which a rival shares.
     cache: Arc<VolumeCache>,
     session: Arc<Session>,
-    prober: Arc<Prober>,
-    built: Option<Built>,
+    probe_placer: Arc<ProbePlacer>,
+    built: Option<BuiltScene>,
     grids: Arc<Grids>,
     opening: Option<(String, Instant)>,
     building: Option<(Settings, Instant)>,
@@ -84,14 +86,14 @@ struct Started {
 }
 
 impl Started {
-    fn new(built: &Built, start: Start) -> Self {
+    fn new(built: &BuiltScene, start: RenderStart) -> Self {
         let mut settings = built.settings.clone();
         settings.film.size = start.size.into();
         Self { scene: built.scene.clone(), settings, generation: start.generation }
     }
 }
 
-impl Engine {
+impl LiveRender {
     /// Starts the loader and the session with `threads` workers (`None`: as many as fit);
     /// `wake` asks the window for a frame.
     pub fn new(
@@ -104,17 +106,17 @@ impl Engine {
 
     /// Another engine for the same scene under another strategy. It shows nothing until it has
     /// built that.
-    pub fn rival(
+    pub fn second_render(
         &self,
         threads: Option<usize>,
         wake: impl Fn() + Clone + Send + Sync + 'static,
     ) -> Result<Self> {
         let session = Arc::new(Session::new(threads, wake.clone())?);
-        let mut rival = Self::with_cache(session, threads, self.cache.clone(), wake)?;
-        rival.built = self.built.clone();
-        rival.grids = self.grids.clone();
-        rival.is_fresh = true;
-        Ok(rival)
+        let mut second_render = Self::with_cache(session, threads, self.cache.clone(), wake)?;
+        second_render.built = self.built.clone();
+        second_render.grids = self.grids.clone();
+        second_render.is_fresh = true;
+        Ok(second_render)
     }
 
     fn with_cache(
@@ -123,12 +125,12 @@ impl Engine {
         cache: Arc<VolumeCache>,
         wake: impl Fn() + Send + Sync + 'static,
     ) -> Result<Self> {
-        let prober = Arc::new(Prober::new(session.clone(), threads)?);
+        let probe_placer = Arc::new(ProbePlacer::new(session.clone(), threads)?);
         Ok(Self {
-            loader: Loader::new(prober.clone(), cache.clone(), wake)?,
+            loader: Loader::new(probe_placer.clone(), cache.clone(), wake)?,
             cache,
             session,
-            prober,
+            probe_placer,
             built: None,
             grids: Arc::default(),
             opening: None,
@@ -152,7 +154,7 @@ impl Engine {
     pub fn open(&mut self, source: &str) {
         self.building = None;
         self.opening = Some((source.to_owned(), Instant::now()));
-        self.request = self.loader.request(Job::Open(source.to_owned()), None);
+        self.request = self.loader.request(LoadJob::Open(source.to_owned()), None);
     }
 
     /// Stops opening or building.
@@ -188,13 +190,13 @@ impl Engine {
     }
 
     /// The scene that was built last, and its settings.
-    pub fn built(&self) -> Option<&Built> {
+    pub fn built(&self) -> Option<&BuiltScene> {
         self.built.as_ref()
     }
 
     /// The probes of the scene that was built last, once they are there.
     pub fn probes(&self) -> Option<Arc<Probes>> {
-        self.prober.probes(self.built.as_ref()?)
+        self.probe_placer.probes(self.built.as_ref()?)
     }
 
     /// The grids of all files seen so far.
@@ -286,8 +288,8 @@ impl Engine {
         let mut news = Vec::new();
         while let Some(report) = self.loader.poll() {
             match report {
-                Report::Ended(outcome) => self.take_in(*outcome, &mut news),
-                Report::Grids(grids) => self.grids = grids,
+                LoadReport::Ended(outcome) => self.take_in(*outcome, &mut news),
+                LoadReport::Grids(grids) => self.grids = grids,
             }
         }
         self.picture = self.session.latest();
@@ -305,11 +307,11 @@ impl Engine {
         news
     }
 
-    fn take_in(&mut self, outcome: Outcome, news: &mut Vec<News>) {
+    fn take_in(&mut self, outcome: LoadOutcome, news: &mut Vec<News>) {
         if outcome.number == self.request {
             self.building = None;
             self.opening = None;
-        } else if let Job::Open(_) = &outcome.job {
+        } else if let LoadJob::Open(_) = &outcome.job {
             // It was done just before another request; nobody waits for it any more.
             return;
         }
@@ -320,8 +322,8 @@ impl Engine {
                     self.started = Some(Started::new(&built, start));
                 }
                 news.push(match job {
-                    Job::Build(_) => News::Accepted,
-                    Job::Open(source) => {
+                    LoadJob::Build(_) => News::Accepted,
+                    LoadJob::Open(source) => {
                         self.refused = None;
                         let (settings, notes) = (built.settings.clone(), built.notes.clone());
                         let (resume, reopened) = outcome
@@ -335,8 +337,8 @@ impl Engine {
                 self.built = Some(built);
                 self.is_fresh = false;
             }
-            (Job::Open(_), Err(error)) => news.push(News::Failed(error.to_string())),
-            (Job::Build(settings), Err(error)) => {
+            (LoadJob::Open(_), Err(error)) => news.push(News::Failed(error.to_string())),
+            (LoadJob::Build(settings), Err(error)) => {
                 self.refused = Some(settings);
                 news.push(News::Refused(error.to_string()));
             }
@@ -360,10 +362,10 @@ impl Engine {
     }
 
     /// The next render's number, which is news.
-    fn next_start(&mut self, size: UVec2, news: &mut Vec<News>) -> Start {
+    fn next_start(&mut self, size: UVec2, news: &mut Vec<News>) -> RenderStart {
         self.generation += 1;
         news.push(News::Started(self.generation));
-        Start { size, generation: self.generation }
+        RenderStart { size, generation: self.generation }
     }
 
     /// Starts the scene that was built last on this film, unless it runs already. The session sees
@@ -387,7 +389,7 @@ impl Engine {
             news.push(News::Failed(text.to_owned()));
         }
         let resume = resume.filter(|resume| resume.film.size() == size);
-        self.prober.start(&built, start, resume);
+        self.probe_placer.start(&built, start, resume);
         self.started = Some(Started::new(&built, start));
     }
 
@@ -416,7 +418,7 @@ impl Engine {
         }
         self.building = Some((settings.clone(), Instant::now()));
         let start = self.next_start(size, news);
-        self.request = self.loader.request(Job::Build(settings.clone()), Some(start));
+        self.request = self.loader.request(LoadJob::Build(settings.clone()), Some(start));
         None
     }
 }

@@ -6,7 +6,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
-use super::scene_loader::{Built, Start};
+use super::scene_loader::{BuiltScene, RenderStart};
 use crate::error::{Error, Result};
 use crate::render::pool::{Pool, Priority};
 use crate::render::{Request, Resume, Session};
@@ -14,10 +14,10 @@ use crate::transport::probes::Probes;
 use crate::transport::{Frame, PixelSampler, Scene};
 
 /// Places the probes of a scene unless told to stop.
-type Maker = dyn Fn(&Scene, &(dyn Fn() -> bool + Sync)) -> Option<Probes> + Send + Sync;
+type PlaceProbes = dyn Fn(&Scene, &(dyn Fn() -> bool + Sync)) -> Option<Probes> + Send + Sync;
 
 /// The handle of the thread. Dropping it stops what is being placed and ends the thread.
-pub struct Prober {
+pub struct ProbePlacer {
     session: Arc<Session>,
     shared: Arc<Shared>,
     thread: Option<std::thread::JoinHandle<()>>,
@@ -27,19 +27,19 @@ struct Shared {
     desk: Mutex<Desk>,
     bell: Condvar,
     /// Grows when what is being placed is wanted no more.
-    edition: AtomicU64,
+    generation: AtomicU64,
 }
 
 #[derive(Default)]
 struct Desk {
     /// The probes placed last, and what from.
-    ready: Option<(Built, Option<Arc<Probes>>)>,
+    ready: Option<(BuiltScene, Option<Arc<Probes>>)>,
     /// The render that awaits its probes.
-    waiting: Option<(Built, Start)>,
+    waiting: Option<(BuiltScene, RenderStart)>,
     closed: bool,
 }
 
-impl Prober {
+impl ProbePlacer {
     /// Starts the thread, which has `threads` workers (`None`: as many as fit), for renders in
     /// `session`.
     ///
@@ -55,7 +55,7 @@ impl Prober {
         make: impl Fn(&Scene, &(dyn Fn() -> bool + Sync)) -> Option<Probes> + Send + Sync + 'static,
     ) -> Result<Self> {
         let desk = Mutex::default();
-        let shared = Arc::new(Shared { desk, bell: Condvar::new(), edition: AtomicU64::new(0) });
+        let shared = Arc::new(Shared { desk, bell: Condvar::new(), generation: AtomicU64::new(0) });
         let (worker, renders) = (shared.clone(), session.clone());
         let thread = std::thread::Builder::new()
             .name("prober".to_owned())
@@ -67,7 +67,7 @@ impl Prober {
     /// Starts to render `built`, with its probes as soon as they are there, on from `resume` if
     /// there is any. The latest wins: of an earlier start they are placed no further, unless this
     /// one has the same.
-    pub fn start(&self, built: &Built, start: Start, resume: Option<Resume>) {
+    pub fn start(&self, built: &BuiltScene, start: RenderStart, resume: Option<Resume>) {
         let mut desk = self.shared.desk();
         let known = desk.known(built);
         let provisional = known.is_none();
@@ -75,7 +75,7 @@ impl Prober {
         self.session.start(Request { resume, ..request });
         let goes_on = provisional && desk.waiting.as_ref().is_some_and(|(b, _)| same(b, built));
         if !goes_on {
-            self.shared.edition.fetch_add(1, Ordering::Relaxed);
+            self.shared.generation.fetch_add(1, Ordering::Relaxed);
         }
         // Only now, so that the render is there to be improved.
         desk.waiting = provisional.then(|| (built.clone(), start));
@@ -83,17 +83,17 @@ impl Prober {
     }
 
     /// The probes of `built`, if they are there.
-    pub fn probes(&self, built: &Built) -> Option<Arc<Probes>> {
+    pub fn probes(&self, built: &BuiltScene) -> Option<Arc<Probes>> {
         let desk = self.shared.desk();
         let (source, probes) = desk.ready.as_ref()?;
         probes.clone().filter(|_| same(source, built))
     }
 }
 
-impl Drop for Prober {
+impl Drop for ProbePlacer {
     fn drop(&mut self) {
         self.shared.desk().closed = true;
-        self.shared.edition.fetch_add(1, Ordering::Relaxed);
+        self.shared.generation.fetch_add(1, Ordering::Relaxed);
         self.shared.bell.notify_one();
         if let Some(thread) = self.thread.take() {
             // A panic over there was reported there already.
@@ -110,23 +110,23 @@ impl Shared {
 
     /// Waits for a render that awaits its probes, with the edition that they belong to; `None` when
     /// the prober is dropped.
-    fn next(&self) -> Option<(Built, u64)> {
+    fn next(&self) -> Option<(BuiltScene, u64)> {
         let idle = |desk: &mut Desk| !desk.closed && desk.waiting.is_none();
         let desk = self.bell.wait_while(self.desk(), idle);
         let desk = desk.unwrap_or_else(PoisonError::into_inner);
         let (built, _) = desk.waiting.as_ref().filter(|_| !desk.closed)?;
-        Some((built.clone(), self.edition.load(Ordering::Relaxed)))
+        Some((built.clone(), self.generation.load(Ordering::Relaxed)))
     }
 
     /// Puts down probes that are placed; the render that awaits them, if they are still wanted.
     fn take_in(
         &self,
-        built: Built,
-        edition: u64,
+        built: BuiltScene,
+        generation: u64,
         probes: Option<&Arc<Probes>>,
-    ) -> Option<(Built, Start)> {
+    ) -> Option<(BuiltScene, RenderStart)> {
         let mut desk = self.desk();
-        if self.edition.load(Ordering::Relaxed) != edition {
+        if self.generation.load(Ordering::Relaxed) != generation {
             return None;
         }
         desk.ready = Some((built, probes.cloned()));
@@ -137,7 +137,7 @@ impl Shared {
 impl Desk {
     /// What is known of the probes of `built`: `None` if they have to be placed first. Lets go of
     /// those that no strategy of the same scene could use.
-    fn known(&mut self, built: &Built) -> Option<Option<Arc<Probes>>> {
+    fn known(&mut self, built: &BuiltScene) -> Option<Option<Arc<Probes>>> {
         self.ready = self.ready.take().filter(|(source, _)| same_places(source, built));
         if Probes::recipe(&built.settings.strategy).is_none() {
             return Some(None);
@@ -149,41 +149,50 @@ impl Desk {
     }
 }
 
-fn work(shared: &Shared, session: &Session, make: &Maker) {
-    while let Some((built, edition)) = shared.next() {
-        let stop = || shared.edition.load(Ordering::Relaxed) != edition;
+fn work(shared: &Shared, session: &Session, make: &PlaceProbes) {
+    while let Some((built, generation)) = shared.next() {
+        let stop = || shared.generation.load(Ordering::Relaxed) != generation;
         let scene = built.scene.clone();
         // Should it fail, the render goes on without; its thread has reported why.
         let probes = catch_unwind(AssertUnwindSafe(|| make(&scene, &stop)));
         let probes = probes.ok().flatten().map(Arc::new);
-        if let Some((built, start)) = shared.take_in(built, edition, probes.as_ref()) {
+        if let Some((built, start)) = shared.take_in(built, generation, probes.as_ref()) {
             let sampler = probes.map(|probes| sampler(&built, start, Some(probes)));
             session.improve(start.generation, sampler);
         }
     }
 }
 
-fn sampler(built: &Built, start: Start, probes: Option<Arc<Probes>>) -> Arc<dyn PixelSampler> {
+fn sampler(
+    built: &BuiltScene,
+    start: RenderStart,
+    probes: Option<Arc<Probes>>,
+) -> Arc<dyn PixelSampler> {
     let seed = built.settings.film.seed;
     Arc::new(Frame::with_probes(built.scene.clone(), start.size, seed, probes))
 }
 
 /// Asks to render a scene with what there is of its probes.
-fn request(built: &Built, start: Start, probes: Option<Arc<Probes>>, provisional: bool) -> Request {
-    let Start { size, generation } = start;
+fn request(
+    built: &BuiltScene,
+    start: RenderStart,
+    probes: Option<Arc<Probes>>,
+    provisional: bool,
+) -> Request {
+    let RenderStart { size, generation } = start;
     let sampler = sampler(built, start, probes);
     let spp = built.settings.film.spp;
     Request { sampler, size, spp, generation, resume: None, provisional }
 }
 
 /// Whether two scenes have the same probes.
-fn same(a: &Built, b: &Built) -> bool {
+fn same(a: &BuiltScene, b: &BuiltScene) -> bool {
     Probes::recipe(&a.settings.strategy) == Probes::recipe(&b.settings.strategy)
         && same_places(a, b)
 }
 
 /// Whether they would with the same strategy.
-fn same_places(a: &Built, b: &Built) -> bool {
+fn same_places(a: &BuiltScene, b: &BuiltScene) -> bool {
     let same_camera = || a.settings.camera.position == b.settings.camera.position;
     a.settings.environment == b.settings.environment
         && a.settings.path == b.settings.path

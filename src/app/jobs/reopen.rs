@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::app::ui::notices::{Level, Notice};
 use crate::app::ui::widgets::significant;
 use crate::error::{Error, Result};
-use crate::image::exr::{Header, Snapshot, read_info, read_snapshot};
+use crate::image::exr::{Snapshot, SnapshotHeader, read_info, read_snapshot};
 use crate::render::estimate::samples_per_pixel;
 use crate::render::{Film, Resume};
 use crate::scene::{self, Settings};
@@ -38,14 +38,14 @@ pub fn open(source: &str) -> Result<(Settings, Reopened)> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     let mut settings = scene::settings_of(&header, source)?;
     let reopened = match samples(path, &name, &header, &settings) {
-        Ok((film, doubts)) => {
+        Ok((film, warnings)) => {
             let spp = significant(samples_per_pixel(&film));
             let mut text = format!("it goes on from {spp} spp.");
             if lift_limit(&mut settings, &film) {
                 text.push_str(" The limit it had reached is lifted.");
             }
-            for doubt in doubts {
-                text.push_str(&format!("\n{doubt}."));
+            for warning in warnings {
+                text.push_str(&format!("\n{warning}."));
             }
             let (seconds, cpu_seconds) = (header.wall_seconds, header.cpu_seconds_render);
             let resume = Some(Resume { film, seconds, cpu_seconds });
@@ -63,20 +63,20 @@ pub fn open(source: &str) -> Result<(Settings, Reopened)> {
 fn samples(
     path: &Path,
     name: &str,
-    header: &Header,
+    header: &SnapshotHeader,
     settings: &Settings,
 ) -> Result<(Film, Vec<String>), String> {
     let files = scene::fingerprints(settings).map_err(|error| error.to_string())?;
-    let kinship = scene::kinship(header, name, settings, &files);
-    let kinship = kinship.map_err(|error| error.to_string())?;
-    if let Some(obstacle) = kinship.obstacle {
-        return Err(obstacle.what);
+    let compatibility = scene::compatibility(header, name, settings, &files);
+    let compatibility = compatibility.map_err(|error| error.to_string())?;
+    if let Some(blocker) = compatibility.blocker {
+        return Err(blocker.what);
     }
     let Snapshot { film, .. } = read_snapshot(path).map_err(|error| error.to_string())?;
     if film.size().to_array() != settings.film.size {
         return Err("its picture has another size than its scene says".to_owned());
     }
-    Ok((film, kinship.doubts))
+    Ok((film, compatibility.warnings))
 }
 
 /// Lets a render go on that has all the samples it was to have; whether it had.
@@ -106,12 +106,12 @@ mod tests {
             ..Default::default()
         };
         settings.volume = vec![volume];
-        let header = Header {
+        let header = SnapshotHeader {
             scene: scene::to_toml(&settings, None).unwrap(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             wall_seconds: 7.0,
             files: scene::fingerprints(&settings).unwrap(),
-            ..Header::default()
+            ..SnapshotHeader::default()
         };
         let mut film = Film::new(UVec2::new(3, 2)).unwrap();
         for pixel in 0..6 {

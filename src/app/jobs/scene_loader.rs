@@ -8,7 +8,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, mpsc};
 
 use glam::UVec2;
 
-use super::probe_placer::Prober;
+use super::probe_placer::ProbePlacer;
 use super::reopen::{self, Reopened};
 use crate::error::{Error, Progress, Result};
 use crate::scene::{self, GridDescription, Note, Overrides, Settings, VolumeCache};
@@ -19,7 +19,7 @@ pub type Grids = HashMap<String, Vec<GridDescription>>;
 
 /// What the loader is asked to do.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Job {
+pub enum LoadJob {
     /// Read a scene, a volume or a snapshot (a path or `builtin:NAME`) and build it.
     Open(String),
     /// Build these settings.
@@ -27,16 +27,16 @@ pub enum Job {
 }
 
 /// What the loader has to say.
-pub enum Report {
+pub enum LoadReport {
     /// A job has ended.
-    Ended(Box<Outcome>),
+    Ended(Box<LoadOutcome>),
     /// The grids of all files seen so far.
     Grids(Arc<Grids>),
 }
 
 /// A render to start as soon as a job is done.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Start {
+pub struct RenderStart {
     /// Width and height of the film in pixels.
     pub size: UVec2,
     /// The number of the render.
@@ -44,22 +44,22 @@ pub struct Start {
 }
 
 /// What came of a job.
-pub struct Outcome {
+pub struct LoadOutcome {
     /// The number of the request, as [`Loader::request`] gave it.
     pub number: u64,
     /// The job.
-    pub job: Job,
+    pub job: LoadJob,
     /// The settings and the scene built from them.
-    pub result: Result<Built>,
+    pub result: Result<BuiltScene>,
     /// The render that was started, if one was asked for and the scene could be built.
-    pub started: Option<Start>,
+    pub started: Option<RenderStart>,
     /// How it goes on, where a snapshot was opened.
     pub reopened: Option<Reopened>,
 }
 
 /// A built scene and the settings that it was built from.
 #[derive(Clone)]
-pub struct Built {
+pub struct BuiltScene {
     /// What it was built from.
     pub settings: Settings,
     /// What was guessed for a bare volume.
@@ -71,7 +71,7 @@ pub struct Built {
 /// The handle of the thread. Dropping it cancels and ends the thread.
 pub struct Loader {
     shared: Arc<Shared>,
-    reports: mpsc::Receiver<Report>,
+    reports: mpsc::Receiver<LoadReport>,
     thread: Option<std::thread::JoinHandle<()>>,
 }
 
@@ -87,8 +87,8 @@ struct Shared {
 /// A request.
 struct Ticket {
     number: u64,
-    job: Job,
-    start: Option<Start>,
+    job: LoadJob,
+    start: Option<RenderStart>,
 }
 
 #[derive(Default)]
@@ -99,13 +99,13 @@ struct Desk {
 }
 
 impl Loader {
-    /// Starts the thread, which starts renders by `prober` and keeps volumes in `cache`. `on_news` is called after each report
+    /// Starts the thread, which starts renders by `probe_placer` and keeps volumes in `cache`. `on_news` is called after each report
     /// and as work proceeds.
     ///
     /// # Errors
     /// When the system refuses to start a thread.
     pub fn new(
-        prober: Arc<Prober>,
+        probe_placer: Arc<ProbePlacer>,
         cache: Arc<VolumeCache>,
         on_news: impl Fn() + Send + Sync + 'static,
     ) -> Result<Self> {
@@ -119,14 +119,14 @@ impl Loader {
         let worker = shared.clone();
         let thread = std::thread::Builder::new()
             .name("loader".to_owned())
-            .spawn(move || work(&worker, &prober, &cache, &sender, &on_news))
+            .spawn(move || work(&worker, &probe_placer, &cache, &sender, &on_news))
             .map_err(|error| Error::io("the loader thread", error))?;
         Ok(Self { shared, reports, thread: Some(thread) })
     }
 
     /// Asks for `job`, and to `start` a render of what it builds; cancels any other. Gives the
     /// number of the request.
-    pub fn request(&self, job: Job, start: Option<Start>) -> u64 {
+    pub fn request(&self, job: LoadJob, start: Option<RenderStart>) -> u64 {
         let number = self.shared.latest.fetch_add(1, Ordering::Relaxed) + 1;
         self.shared.desk().next = Some(Ticket { number, job, start });
         self.shared.wake.notify_all();
@@ -140,7 +140,7 @@ impl Loader {
     }
 
     /// The next report, if there is one.
-    pub fn poll(&self) -> Option<Report> {
+    pub fn poll(&self) -> Option<LoadReport> {
         self.reports.try_recv().ok()
     }
 
@@ -190,9 +190,9 @@ impl Shared {
 
 fn work(
     shared: &Shared,
-    prober: &Prober,
+    probe_placer: &ProbePlacer,
     cache: &VolumeCache,
-    reports: &mpsc::Sender<Report>,
+    reports: &mpsc::Sender<LoadReport>,
     on_news: &(dyn Fn() + Sync),
 ) {
     let mut grids = Grids::new();
@@ -218,43 +218,43 @@ fn work(
         let settings = result.as_ref().ok().map(|built| built.settings.clone());
         let started = start.filter(|start| match &result {
             Ok(built) => {
-                prober.start(built, *start, None);
+                probe_placer.start(built, *start, None);
                 true
             }
             Err(_) => false,
         });
         // The receiver lives as long as this thread: the loader joins it.
-        let outcome = Outcome { number, job, result, started, reopened };
-        let _ = reports.send(Report::Ended(Box::new(outcome)));
+        let outcome = LoadOutcome { number, job, result, started, reopened };
+        let _ = reports.send(LoadReport::Ended(Box::new(outcome)));
         on_news();
         let Some(settings) = settings else { continue };
         let still_latest = |_: f32| is_latest();
         // What fails here is told when the grid is asked for.
         if let Ok(true) = add_missing(&mut grids, &settings, cache, &still_latest) {
-            let _ = reports.send(Report::Grids(Arc::new(grids.clone())));
+            let _ = reports.send(LoadReport::Grids(Arc::new(grids.clone())));
             on_news();
         }
     }
 }
 
 fn run(
-    job: &Job,
+    job: &LoadJob,
     cache: &VolumeCache,
     progress: Progress<'_>,
-) -> Result<(Built, Option<Reopened>)> {
+) -> Result<(BuiltScene, Option<Reopened>)> {
     let (settings, notes, reopened) = match job {
-        Job::Open(source) if reopen::is_snapshot(source) => {
+        LoadJob::Open(source) if reopen::is_snapshot(source) => {
             let (settings, reopened) = reopen::open(source)?;
             (settings, Vec::new(), Some(reopened))
         }
-        Job::Open(source) => {
+        LoadJob::Open(source) => {
             let opened = scene::open(source, &Overrides::default(), cache, progress)?;
             (opened.settings, opened.notes, None)
         }
-        Job::Build(settings) => (settings.clone(), Vec::new(), None),
+        LoadJob::Build(settings) => (settings.clone(), Vec::new(), None),
     };
     let scene = Arc::new(scene::assemble(&settings, cache, progress)?);
-    Ok((Built { settings, notes, scene }, reopened))
+    Ok((BuiltScene { settings, notes, scene }, reopened))
 }
 
 /// Adds the grids of the files of `settings` that `grids` does not have yet, and reads those that
@@ -283,14 +283,14 @@ mod tests {
 
     fn loader() -> Loader {
         let session = Arc::new(Session::new(Some(1), || ()).unwrap());
-        let prober = Arc::new(Prober::new(session, Some(1)).unwrap());
-        Loader::new(prober, Arc::default(), || ()).unwrap()
+        let probe_placer = Arc::new(ProbePlacer::new(session, Some(1)).unwrap());
+        Loader::new(probe_placer, Arc::default(), || ()).unwrap()
     }
 
-    fn wait(loader: &Loader) -> Outcome {
+    fn wait(loader: &Loader) -> LoadOutcome {
         let start = Instant::now();
         loop {
-            if let Some(Report::Ended(outcome)) = loader.poll() {
+            if let Some(LoadReport::Ended(outcome)) = loader.poll() {
                 return *outcome;
             }
             assert!(start.elapsed() < Duration::from_secs(60), "no outcome");
@@ -304,7 +304,7 @@ mod tests {
         for seed in 0..50 {
             let mut settings = Settings::default();
             settings.film.seed = seed;
-            loader.request(Job::Build(settings), None);
+            loader.request(LoadJob::Build(settings), None);
         }
         loop {
             let outcome = wait(&loader);
@@ -318,7 +318,7 @@ mod tests {
     #[test]
     fn a_cancelled_job_has_no_outcome() {
         let loader = loader();
-        loader.request(Job::Open(scene::DEFAULT_SCENE.to_owned()), None);
+        loader.request(LoadJob::Open(scene::DEFAULT_SCENE.to_owned()), None);
         loader.cancel();
         let start = Instant::now();
         while loader.progress().is_some() {
@@ -331,9 +331,9 @@ mod tests {
     #[test]
     fn failures_name_what_was_asked_for() {
         let loader = loader();
-        loader.request(Job::Open("no/such/file.vdb".to_owned()), None);
+        loader.request(LoadJob::Open("no/such/file.vdb".to_owned()), None);
         let outcome = wait(&loader);
-        assert_eq!(outcome.job, Job::Open("no/such/file.vdb".to_owned()));
+        assert_eq!(outcome.job, LoadJob::Open("no/such/file.vdb".to_owned()));
         assert!(outcome.result.is_err());
         assert_eq!(loader.progress(), None);
     }

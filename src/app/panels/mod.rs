@@ -19,8 +19,8 @@ use egui::{RichText, Ui};
 pub use super::ui::sections::{folded_section, section};
 
 use super::command::Command;
-use super::compare::reference::Yardstick;
-use super::compare::second_side::Duel;
+use super::compare::reference::MeasuredReference;
+use super::compare::second_side::SecondSide;
 use super::diagnostics::Wanted;
 use super::document::Editor;
 use super::jobs::scene_loader::Grids;
@@ -43,11 +43,11 @@ pub struct Panel<'a> {
     /// How often probes are asked in the picture, relative to what they propose, if that is known.
     pub guided_flights: Option<f32>,
     /// The other side of a comparison.
-    pub duel: &'a Duel,
+    pub second_side: &'a SecondSide,
     /// How many sides take turns at the machine.
     pub turns: usize,
     /// The reference and the errors against it.
-    pub yardstick: &'a mut Yardstick,
+    pub reference: &'a mut MeasuredReference,
     /// What is shown to understand the render.
     pub wanted: &'a mut Wanted,
     /// Files that were open before, the last one first.

@@ -32,7 +32,8 @@ pub fn show(
 ) -> Option<&'static str> {
     let memory = ui.scope_id().with("ramp stop");
     let selected = ui.data(|data| data.get_temp::<usize>(memory)).unwrap_or(0);
-    let mut editor = Editor { selected: selected.min(stops.len().saturating_sub(1)), edit: None };
+    let mut editor =
+        RampEditor { selected: selected.min(stops.len().saturating_sub(1)), edit: None };
     let span = steady_span(ui, memory, stops, voxels);
     editor.ramp(ui, stops, &span, voxels);
     editor.handles(ui, stops, &span);
@@ -76,12 +77,12 @@ fn handle_id(ui: &Ui, index: usize) -> Id {
     ui.scope_id().with(("stop", index))
 }
 
-struct Editor {
+struct RampEditor {
     selected: usize,
     edit: Option<&'static str>,
 }
 
-impl Editor {
+impl RampEditor {
     fn ramp(
         &mut self,
         ui: &mut Ui,

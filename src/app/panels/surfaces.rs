@@ -69,8 +69,8 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
 
 fn title(surface: &SurfaceSettings, index: usize) -> String {
     let name = SHAPES.iter().find(|(shape, ..)| *shape == surface.shape);
-    let glows = if surface.emission.is_black() { "" } else { ", glowing" };
-    format!("{} {}{glows}", name.map_or("Surface", |(_, name, _)| name), index + 1)
+    let emits = if surface.emission.is_black() { "" } else { ", glowing" };
+    format!("{} {}{emits}", name.map_or("Surface", |(_, name, _)| name), index + 1)
 }
 
 fn floor_button(

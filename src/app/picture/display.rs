@@ -18,13 +18,13 @@ use crate::app::ui::theme::color;
 use crate::image::tone::{Channel, Tone, false_color};
 use crate::math::Rgb;
 use crate::render::Picture;
-use canvas::{Canvas, Place};
+use canvas::{GpuCanvas, PixelRect};
 use pipelines::{Pipelines, Variant};
 
-/// `View` of the shader.
+/// `ViewUniform` of the shader.
 #[derive(Clone, Copy, Debug, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
 #[repr(C)]
-struct View {
+struct ViewUniform {
     origin: [f32; 2],
     step: f32,
     block_log2: u32,
@@ -52,23 +52,23 @@ pub enum Look {
 
 /// Which data of a picture is on the graphics card.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Source {
+enum TextureData {
     Pixels,
     Light,
     Numbers,
 }
 
 impl Look {
-    fn source(self) -> Source {
+    fn source(self) -> TextureData {
         match self {
-            Self::Picture(_) => Source::Pixels,
-            Self::Light(_) => Source::Light,
-            Self::Numbers(_) => Source::Numbers,
+            Self::Picture(_) => TextureData::Pixels,
+            Self::Light(_) => TextureData::Light,
+            Self::Numbers(_) => TextureData::Numbers,
         }
     }
 }
 
-impl Source {
+impl TextureData {
     /// Floats of a pixel on the graphics card.
     fn format(self) -> wgpu::TextureFormat {
         match self {
@@ -89,7 +89,7 @@ impl Source {
 /// What of a picture is on the graphics card, and how.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Upload {
-    source: Source,
+    source: TextureData,
     /// As what its light is shown, if that is settled here: of a coarse picture this is worked out
     /// for its few texels, not for every pixel of the window.
     coded: Option<Tone>,
@@ -100,7 +100,7 @@ impl Upload {
     fn texels(self, picture: &Picture) -> Cow<'_, [u8]> {
         let Some(tone) = self.coded else {
             return match self.source {
-                Source::Numbers => blocks(picture, &picture.layer.numbers),
+                TextureData::Numbers => blocks(picture, &picture.layer.numbers),
                 light => blocks(picture, light.light(picture)),
             };
         };
@@ -133,29 +133,29 @@ fn corners<'a, T>(picture: &Picture, values: &'a [T]) -> impl Iterator<Item = &'
 struct Display {
     pipelines: Pipelines,
     layout: wgpu::BindGroupLayout,
-    panes: [Pane; PANES],
+    panes: [GpuPane; PANES],
 }
 
 /// A picture on the graphics card and how it is looked at.
-struct Pane {
+struct GpuPane {
     view: wgpu::Buffer,
-    shown: Option<Shown>,
-    canvas: Option<Canvas>,
+    shown: Option<UploadedPicture>,
+    canvas: Option<GpuCanvas>,
     /// What is drawn on the canvas, if anything.
-    drawn: Option<Drawn>,
+    drawn: Option<DrawnState>,
 }
 
 /// What is drawn on a canvas.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Drawn {
-    view: View,
+struct DrawnState {
+    view: ViewUniform,
     variant: Variant,
     /// The part of the canvas that is seen; nothing is drawn beside it.
-    seen: Place,
+    seen: PixelRect,
 }
 
 /// The uploaded picture.
-struct Shown {
+struct UploadedPicture {
     picture: Arc<Picture>,
     upload: Upload,
     texture: wgpu::Texture,
@@ -206,13 +206,14 @@ impl CallbackTrait for Shot {
         let Some(display) = resources.get_mut::<Display>() else { return Vec::new() };
         let Display { layout, panes, pipelines } = display;
         let Some(pane) = panes.get_mut(self.pane) else { return Vec::new() };
-        let place = Place::of(&self.area, screen);
+        let place = PixelRect::of(&self.area, screen);
         let coded = self.coded(pipelines.canvas_format());
         let view = self.view(&place, screen.pixels_per_point, coded.is_some());
         let variant = Variant::new(self.look, view.step, coded.is_some());
         let upload = Upload { source: self.look.source(), coded };
         let is_new = pane.upload(device, queue, layout, &self.picture, upload);
-        let drawn = Drawn { view, variant, seen: Place::of(&self.clip, screen).within(&place) };
+        let drawn =
+            DrawnState { view, variant, seen: PixelRect::of(&self.clip, screen).within(&place) };
         if is_new || !pane.shows(&drawn, place.size) {
             queue.write_buffer(&pane.view, 0, bytemuck::bytes_of(&view));
             let format = pipelines.canvas_format();
@@ -250,7 +251,7 @@ impl Shot {
         (are_large && is_plain).then_some(tone)
     }
 
-    fn view(&self, place: &Place, pixels_per_point: f32, is_coded: bool) -> View {
+    fn view(&self, place: &PixelRect, pixels_per_point: f32, is_coded: bool) -> ViewUniform {
         let area = Vec2::new(self.area.min.x, self.area.min.y) * pixels_per_point;
         let corner = area + self.placement.corner;
         let surround = match is_coded {
@@ -267,7 +268,7 @@ impl Shot {
             (Look::Picture(_) | Look::Light(_), Channel::FalseColor) => stop_colors(),
             _ => *stops(),
         };
-        View {
+        ViewUniform {
             origin: (-corner / self.placement.scale).into(),
             step: 1.0 / self.placement.scale,
             block_log2: self.picture.block_log2,
@@ -298,16 +299,16 @@ impl Display {
     fn new(device: &wgpu::Device, target: wgpu::TextureFormat) -> Self {
         let layout = bind_group_layout(device);
         let pipelines = Pipelines::new(device, &layout, target);
-        let panes = std::array::from_fn(|_| Pane::new(device));
+        let panes = std::array::from_fn(|_| GpuPane::new(device));
         Self { pipelines, layout, panes }
     }
 }
 
-impl Pane {
+impl GpuPane {
     fn new(device: &wgpu::Device) -> Self {
         let view = device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("display view"),
-            size: size_of::<View>() as u64,
+            size: size_of::<ViewUniform>() as u64,
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
@@ -315,7 +316,7 @@ impl Pane {
     }
 
     /// Whether the canvas shows just that already.
-    fn shows(&self, wanted: &Drawn, size: UVec2) -> bool {
+    fn shows(&self, wanted: &DrawnState, size: UVec2) -> bool {
         self.drawn.as_ref() == Some(wanted)
             && self.canvas.as_ref().is_some_and(|canvas| canvas.is_of(size))
     }
@@ -327,11 +328,12 @@ impl Pane {
         encoder: &mut wgpu::CommandEncoder,
         (layout, pipeline): (&wgpu::BindGroupLayout, &wgpu::RenderPipeline),
         (size, format): (UVec2, wgpu::TextureFormat),
-        seen: &Place,
+        seen: &PixelRect,
     ) {
         let Some(shown) = &self.shown else { return };
         let old = self.canvas.take().filter(|canvas| canvas.is_of(size));
-        let canvas = old.unwrap_or_else(|| Canvas::new(device, layout, (size, format), &self.view));
+        let canvas =
+            old.unwrap_or_else(|| GpuCanvas::new(device, layout, (size, format), &self.view));
         canvas.draw(encoder, pipeline, &shown.bindings, seen);
         self.canvas = Some(canvas);
     }
@@ -346,12 +348,13 @@ impl Pane {
         upload: Upload,
     ) -> bool {
         let format = upload.source.format();
-        let is_there =
-            |shown: &Shown| Arc::ptr_eq(&shown.picture, picture) && shown.upload == upload;
+        let is_there = |shown: &UploadedPicture| {
+            Arc::ptr_eq(&shown.picture, picture) && shown.upload == upload
+        };
         if self.shown.as_ref().is_some_and(is_there) {
             return false;
         }
-        let fits = |shown: &Shown| {
+        let fits = |shown: &UploadedPicture| {
             shown.picture.size == picture.size && shown.upload.source.format() == format
         };
         let (texture, bindings) = match self.shown.take().filter(fits) {
@@ -371,7 +374,7 @@ impl Pane {
             },
             wgpu::Extent3d { width, height, depth_or_array_layers: 1 },
         );
-        self.shown = Some(Shown { picture: picture.clone(), upload, texture, bindings });
+        self.shown = Some(UploadedPicture { picture: picture.clone(), upload, texture, bindings });
         true
     }
 
@@ -439,7 +442,7 @@ fn bind_group_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
                 ty: wgpu::BindingType::Buffer {
                     ty: wgpu::BufferBindingType::Uniform,
                     has_dynamic_offset: false,
-                    min_binding_size: NonZeroU64::new(size_of::<View>() as u64),
+                    min_binding_size: NonZeroU64::new(size_of::<ViewUniform>() as u64),
                 },
                 count: None,
             },

@@ -14,7 +14,7 @@ use crate::app::ui::theme::color;
 use crate::app::ui::widgets::arrow_steps;
 use crate::scene;
 use crate::scene::settings::LightSettings;
-use figure::{Figure, Handle, Part};
+use figure::{Figure, Handle, HandlePart};
 use lens::Lens;
 
 /// Reach of the hand around a handle, in points.
@@ -140,16 +140,17 @@ fn sense(ui: &Ui, view: View, handle: Handle, at: Pos2) -> Response {
 /// Draws lines and handles, each on a dark ground, so that they show on any picture.
 fn paint(ui: &Ui, lens: &Lens, figure: &Figure, lit: Option<Handle>) {
     let painter = ui.painter_at(lens.view.rect);
-    let color_of = |part: Part, is_lit: bool| match part {
+    let color_of = |part: HandlePart, is_lit: bool| match part {
         _ if is_lit => color::TEXT_STRONG,
-        Part::Axis(axis) => color::AXES.get(axis).copied().unwrap_or(color::TEXT),
-        Part::Body => color::ACCENT,
+        HandlePart::Axis(axis) => color::AXES.get(axis).copied().unwrap_or(color::TEXT),
+        HandlePart::Body => color::ACCENT,
     };
     let segments: Vec<([Pos2; 2], Color32)> = figure
         .lines
         .iter()
         .filter_map(|(line, part)| {
-            let is_lit = matches!((part, lit), (Part::Axis(a), Some(Handle::Axis(b))) if *a == b);
+            let is_lit =
+                matches!((part, lit), (HandlePart::Axis(a), Some(Handle::Axis(b))) if *a == b);
             Some((lens.segment(*line)?, color_of(*part, is_lit)))
         })
         .collect();

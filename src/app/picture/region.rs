@@ -9,7 +9,7 @@ use crate::render::Area;
 
 /// The rectangle and the hand that draws it. No edit of the scene, so that undo leaves it alone.
 #[derive(Debug, Default)]
-pub struct Rectangle {
+pub struct PictureRegion {
     /// Whether the next drag draws it.
     armed: bool,
     /// What it covers of a picture of this size.
@@ -20,7 +20,7 @@ pub struct Rectangle {
     from: Option<(Vec2, View)>,
 }
 
-impl Rectangle {
+impl PictureRegion {
     /// Lets the next drag on the picture draw it.
     pub fn arm(&mut self) {
         self.armed = true;
@@ -135,16 +135,16 @@ mod tests {
 
     #[test]
     fn it_covers_the_same_part_of_another_size() {
-        let mut rectangle = Rectangle::default();
-        assert!(!rectangle.remove() && rectangle.area(UVec2::ONE).is_none());
-        rectangle.arm();
-        rectangle.set(area(10, 5, 20, 10), UVec2::new(40, 20));
-        assert!(!rectangle.is_armed());
-        assert_eq!(rectangle.area(UVec2::new(40, 20)), Some(area(10, 5, 20, 10)));
-        assert_eq!(rectangle.area(UVec2::new(80, 20)), Some(area(20, 5, 40, 10)));
-        assert_eq!(rectangle.area(UVec2::new(1, 1)).unwrap().pixels(), 1);
-        rectangle.set(area(90, 90, 0, 7), UVec2::new(40, 20));
-        assert_eq!(rectangle.area(UVec2::new(40, 20)), Some(area(39, 19, 1, 1)));
-        assert!(rectangle.remove() && rectangle.area(UVec2::ONE).is_none());
+        let mut region = PictureRegion::default();
+        assert!(!region.remove() && region.area(UVec2::ONE).is_none());
+        region.arm();
+        region.set(area(10, 5, 20, 10), UVec2::new(40, 20));
+        assert!(!region.is_armed());
+        assert_eq!(region.area(UVec2::new(40, 20)), Some(area(10, 5, 20, 10)));
+        assert_eq!(region.area(UVec2::new(80, 20)), Some(area(20, 5, 40, 10)));
+        assert_eq!(region.area(UVec2::new(1, 1)).unwrap().pixels(), 1);
+        region.set(area(90, 90, 0, 7), UVec2::new(40, 20));
+        assert_eq!(region.area(UVec2::new(40, 20)), Some(area(39, 19, 1, 1)));
+        assert!(region.remove() && region.area(UVec2::ONE).is_none());
     }
 }

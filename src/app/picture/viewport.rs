@@ -9,7 +9,7 @@ use glam::{UVec2, Vec2, Vec3};
 use super::display::{self, Look};
 use super::navigation::Pose;
 use super::pixel_values;
-use super::region::Rectangle;
+use super::region::PictureRegion;
 use super::zoom::{Placement, Zoom};
 use crate::app::document::Editor;
 use crate::app::ui::theme::color;
@@ -54,7 +54,7 @@ pub enum Shown {
 }
 
 /// A part of the viewport with a picture.
-struct Pane<'p> {
+struct ViewportPane<'p> {
     picture: &'p Arc<Picture>,
     look: Look,
     /// What the picture is laid out in.
@@ -80,8 +80,8 @@ impl Shown {
         )
     }
 
-    fn panes(&self, rect: Rect) -> Vec<Pane<'_>> {
-        let pane = |picture, look, area, clip| Pane { picture, look, area, clip };
+    fn panes(&self, rect: Rect) -> Vec<ViewportPane<'_>> {
+        let pane = |picture, look, area, clip| ViewportPane { picture, look, area, clip };
         match self {
             Self::Nothing => Vec::new(),
             Self::One(picture, look) => vec![pane(picture, *look, rect, rect)],
@@ -191,7 +191,7 @@ impl Viewport {
         ui: &mut Ui,
         editor: &mut Editor,
         shown: &Shown,
-        rectangle: &mut Rectangle,
+        region: &mut PictureRegion,
     ) -> Vec<View> {
         let rect = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(rect, Sense::click_and_drag());
@@ -211,7 +211,7 @@ impl Viewport {
         self.pointer = under.map(|at| from_egui(at - area.min) * factor);
         let view = hovered.map(|pane| self.view(pane, factor));
         steer(ui, &response, editor);
-        if !rectangle.draw(ui, &response, view.as_ref()) {
+        if !region.draw(ui, &response, view.as_ref()) {
             self.navigate(ui, &response, editor, hovered.map(|pane| pane.picture.size));
         }
         self.probe = None;
@@ -243,13 +243,13 @@ impl Viewport {
     }
 
     /// Where the picture of a pane lies.
-    fn view(&self, pane: &Pane<'_>, factor: f32) -> View {
+    fn view(&self, pane: &ViewportPane<'_>, factor: f32) -> View {
         let size = pane.picture.size;
         let placement = self.zoom.place(size, self.size);
         View { rect: pane.area, placement, factor, size, hovered: false, clicked: None }
     }
 
-    fn paint(&self, ui: &Ui, pane: &Pane<'_>, index: usize) {
+    fn paint(&self, ui: &Ui, pane: &ViewportPane<'_>, index: usize) {
         let shot = display::Shot {
             picture: pane.picture.clone(),
             look: pane.look,

@@ -4,7 +4,7 @@ use egui::{Align2, CursorIcon, FontId, Rect, Sense, Stroke, TextStyle, Ui, pos2,
 
 use super::App;
 use crate::app::compare::panel;
-use crate::app::compare::second_side::{FLIP, Layout};
+use crate::app::compare::second_side::{CompareLayout, FLIP};
 use crate::app::document::Side;
 use crate::app::ui::theme::{color, space};
 
@@ -21,18 +21,20 @@ impl App {
     /// Draws the divider and the names of the sides over the pictures in `rect`.
     pub(super) fn compare_marks(&mut self, ui: &mut Ui, rect: Rect) {
         let document = &self.editor.document;
-        let Some(active) = self.active_side().filter(|_| self.duel.is_on()) else { return };
-        let name = |side| panel::side_title(side, document, &self.duel);
+        let Some(active) = self.active_side().filter(|_| self.second_side.is_on()) else { return };
+        let name = |side| panel::side_title(side, document, &self.second_side);
         let (a, b) = (name(Side::A), name(Side::B));
         if ui.input(|input| input.key_down(FLIP)) && self.map().is_none() {
             let other = if active == Side::A { &b } else { &a };
             chip(ui, rect, rect.center_top(), Align2::CENTER_TOP, other);
             return;
         }
-        let middle = match self.duel.layout {
-            Layout::Wipe => self.divider(ui, rect),
-            Layout::Beside => rect.center().x,
-            Layout::Difference(_) | Layout::Noise(_) | Layout::Error(..) => return,
+        let middle = match self.second_side.layout {
+            CompareLayout::Wipe => self.divider(ui, rect),
+            CompareLayout::Beside => rect.center().x,
+            CompareLayout::Difference(_) | CompareLayout::Noise(_) | CompareLayout::Error(..) => {
+                return;
+            }
         };
         let gap = vec2(space::ROW, 0.0);
         chip(ui, rect, pos2(middle, rect.top()) - gap, Align2::RIGHT_TOP, &a);
@@ -41,7 +43,7 @@ impl App {
 
     /// The divider of the wipe, which can be dragged; where it is.
     fn divider(&mut self, ui: &mut Ui, rect: Rect) -> f32 {
-        let x = rect.left() + self.duel.divider * rect.width();
+        let x = rect.left() + self.second_side.divider * rect.width();
         let grip = Rect::from_x_y_ranges(x - GRIP..=x + GRIP, rect.y_range());
         let response = ui.interact(grip, ui.scope_id().with("divider"), Sense::drag());
         response.widget_info(|| egui::WidgetInfo::labeled(egui::Role::Splitter, true, "Divider"));
@@ -49,9 +51,9 @@ impl App {
             ui.set_cursor_icon(CursorIcon::ResizeHorizontal);
         }
         if let Some(at) = response.interact_pointer_pos().filter(|_| response.dragged()) {
-            self.duel.divider = ((at.x - rect.left()) / rect.width()).clamp(0.0, 1.0);
+            self.second_side.divider = ((at.x - rect.left()) / rect.width()).clamp(0.0, 1.0);
         }
-        let x = (rect.left() + self.duel.divider * rect.width()).round();
+        let x = (rect.left() + self.second_side.divider * rect.width()).round();
         let painter = ui.painter_at(rect);
         for (width, color) in [(3.0, color::WELL), (1.0, color::TEXT_STRONG)] {
             painter.vline(x, rect.y_range(), Stroke::new(width, color));

@@ -8,7 +8,7 @@ use crate::app::command::Command;
 use crate::app::jobs::dialogs::Purpose;
 use crate::app::panels::strategy;
 use crate::app::shell::palette::Palette;
-use crate::app::shell::start::Start;
+use crate::app::shell::start::StartRow;
 use crate::image::tone::{Channel, auto_exposure};
 use crate::scene;
 
@@ -27,7 +27,7 @@ impl App {
             Command::PauseResume => self.engine.set_paused(!self.engine.paused()),
             Command::Restart => {
                 self.engine.restart();
-                self.duel.restart();
+                self.second_side.restart();
             }
             Command::FrameVolume => self.frame_volume(),
             Command::FitPicture => self.viewport.zoom = Default::default(),
@@ -41,7 +41,7 @@ impl App {
             Command::Start => {
                 self.start = match self.start.take() {
                     Some(_) => None,
-                    None => Some(Start::default()),
+                    None => Some(StartRow::default()),
                 };
             }
             Command::FoldPanels => self.folded = !self.folded,
@@ -73,17 +73,17 @@ impl App {
     pub(super) fn leave(&mut self, ctx: &Context) {
         if self.help {
             self.help = false;
-        } else if self.kept.losing.is_some() {
+        } else if self.unsaved.losing.is_some() {
             self.stay();
         } else if self.sweep.open && self.sweep.results().is_some() {
             self.sweep.open = false;
-        } else if self.rectangle.is_armed() {
-            self.rectangle.remove();
+        } else if self.region.is_armed() {
+            self.region.remove();
         } else if self.full_screen {
             self.set_full_screen(ctx, false);
         } else if self.snapshots.strip.shown().is_some() {
             self.snapshots.strip.show(None);
-        } else if !self.rectangle.remove() && self.gizmo.selected.take().is_none() {
+        } else if !self.region.remove() && self.gizmo.selected.take().is_none() {
             self.start = None;
         }
     }
@@ -95,9 +95,9 @@ impl App {
         self.set_full_screen(ctx, false);
         self.folded = false;
         self.sections.reset();
-        self.remembered.start = true;
+        self.preferences.start = true;
         self.viewport.zoom = Default::default();
-        self.duel.layout = Default::default();
+        self.second_side.layout = Default::default();
         self.editor.document.tone = Default::default();
         self.editor.name_edit("display");
     }

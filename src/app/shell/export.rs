@@ -12,7 +12,7 @@ use crate::app::picture::viewport::Shown;
 use crate::app::ui::widgets::significant;
 use crate::error::{Error, Result};
 use crate::image::export;
-use crate::image::export::{Pane, Sheet, Table};
+use crate::image::export::{Export, FigureTable, Pane};
 use crate::image::legend;
 use crate::image::ramp;
 use crate::image::tone::Tone;
@@ -33,7 +33,7 @@ pub struct SavedView {
     /// Sentences below.
     pub words: Vec<String>,
     /// Figures below.
-    pub tables: Vec<Table>,
+    pub tables: Vec<FigureTable>,
 }
 
 impl SavedView {
@@ -55,8 +55,8 @@ impl SavedView {
             color: &color,
             ends: colors.ends().map(|end| significant(f64::from(end))),
         });
-        let sheet = Sheet { panes, legend, words: self.words, tables: self.tables };
-        export::write(path, &sheet)
+        let export = Export { panes, legend, words: self.words, tables: self.tables };
+        export::write(path, &export)
     }
 
     /// The pictures, those of a wipe as one.
@@ -88,9 +88,8 @@ impl SavedView {
     }
 
     fn pane(&self, picture: &Arc<Picture>, look: Look, names: Vec<String>) -> Pane {
-        let rectangle: Option<[UVec2; 2]> =
-            self.area.map(|area| [area.first, area.first + area.size]);
-        Pane { size: picture.size, codes: codes(picture, look), names, divider: None, rectangle }
+        let region: Option<[UVec2; 2]> = self.area.map(|area| [area.first, area.first + area.size]);
+        Pane { size: picture.size, codes: codes(picture, look), names, divider: None, region }
     }
 }
 

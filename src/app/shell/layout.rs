@@ -15,8 +15,8 @@ use crate::app::picture::viewport::Shown;
 use crate::app::shell::bars;
 use crate::app::shell::bars::{Dropped, Typed};
 use crate::app::shell::palette;
-use crate::app::shell::preferences::Remembered;
-use crate::app::shell::start::Choice;
+use crate::app::shell::preferences::Preferences;
+use crate::app::shell::start::StartChoice;
 use crate::app::ui::theme;
 use crate::app::ui::theme::{color, space};
 use crate::render::Picture;
@@ -28,7 +28,7 @@ impl App {
         let title = format!("{mark}{}", self.title());
         let plain = self.panel_frame();
         let grids = self.engine.grids().clone();
-        let edited = self.duel.edited(&self.engine);
+        let edited = self.second_side.edited(&self.engine);
         let mut reopened = None;
         let bounds = self.subject_bounds();
         let mut panel = Panel {
@@ -38,11 +38,11 @@ impl App {
             bounds,
             selected_light: &mut self.gizmo.selected,
             guided_flights: edited.picture().and_then(|picture| picture.stats.guided_flights),
-            duel: &self.duel,
-            turns: self.duel.turns(&self.engine),
-            yardstick: &mut self.yardstick,
+            second_side: &self.second_side,
+            turns: self.second_side.turns(&self.engine),
+            reference: &mut self.reference,
             wanted: &mut self.diagnostics.wanted,
-            recent: &self.remembered.recent,
+            recent: &self.preferences.recent,
             reopened: &mut reopened,
             commands,
         };
@@ -114,7 +114,7 @@ impl App {
         egui::CentralPanel::no_frame()
             .show(ui, |ui| {
                 let rect = ui.available_rect_before_wrap();
-                let views = self.viewport.show(ui, &mut self.editor, &shown, &mut self.rectangle);
+                let views = self.viewport.show(ui, &mut self.editor, &shown, &mut self.region);
                 let first = views.first().copied();
                 // What is drawn over the picture is about the live one.
                 match (first, legend) {
@@ -124,12 +124,12 @@ impl App {
                     (Some(view), Some(legend)) => show_legends(ui, view.rect, &[legend]),
                     _ => {}
                 }
-                views.iter().for_each(|view| self.rectangle.paint(ui, view));
+                views.iter().for_each(|view| self.region.paint(ui, view));
                 if is_live {
                     self.compare_marks(ui, rect);
                 }
                 let clicked = first.is_some_and(|view| view.clicked.is_some());
-                if clicked && !self.diagnostics.wanted.ray && !self.rectangle.remove() {
+                if clicked && !self.diagnostics.wanted.ray && !self.region.remove() {
                     self.gizmo.selected = None;
                 }
                 if let Some(view) = first.filter(|_| is_live && is_plain && !self.full_screen) {
@@ -156,12 +156,12 @@ impl App {
         }
         let Some(picture) = self.engine.picture() else { return Shown::Nothing };
         let layer = |pictures: &[&Picture]| self.diagnostics.look(pictures, tone).unwrap_or(look);
-        let pictures = self.duel.pictures(&self.engine);
+        let pictures = self.second_side.pictures(&self.engine);
         if let Some((active, pictures)) = self.active_side().zip(pictures) {
             let look = layer(&pictures.each_ref().map(|picture| &**picture));
-            return self.duel.shown(ctx, pictures, (look, active), map);
+            return self.second_side.shown(ctx, pictures, (look, active), map);
         }
-        match map.filter(|_| !self.duel.is_on()) {
+        match map.filter(|_| !self.second_side.is_on()) {
             Some(map) => Shown::One(map.picture.clone(), map.look),
             None => Shown::One(picture.clone(), layer(&[picture])),
         }
@@ -185,11 +185,11 @@ impl App {
     fn start_row(&mut self, ui: &mut Ui) {
         let Some(start) = &mut self.start else { return };
         let row = egui::Panel::bottom("start").frame(theme::panel_frame());
-        let Remembered { recent, start: again, .. } = &mut self.remembered;
+        let Preferences { recent, start: again, .. } = &mut self.preferences;
         match row.show(ui, |ui| start.show(ui, recent, again)).inner {
-            Some(Choice::Open(source)) => self.open_unless_lost(&source),
-            Some(Choice::Command(command)) => self.execute(&ui.ctx().clone(), command),
-            Some(Choice::Close) => self.start = None,
+            Some(StartChoice::Open(source)) => self.open_unless_lost(&source),
+            Some(StartChoice::Command(command)) => self.execute(&ui.ctx().clone(), command),
+            Some(StartChoice::Close) => self.start = None,
             None => {}
         }
     }
@@ -197,9 +197,9 @@ impl App {
     fn palette_window(&mut self, ui: &Ui, commands: &mut Vec<Command>) {
         let Some(palette) = &mut self.palette else { return };
         match palette.show(ui.ctx()) {
-            palette::Choice::Pending => return,
-            palette::Choice::Done(command) => commands.push(command),
-            palette::Choice::Left => {}
+            palette::PaletteChoice::Pending => return,
+            palette::PaletteChoice::Done(command) => commands.push(command),
+            palette::PaletteChoice::Left => {}
         }
         self.palette = None;
     }

@@ -11,10 +11,10 @@ use super::App;
 use crate::app::command::Command;
 use crate::app::compare::maps::Map;
 use crate::app::compare::panel;
-use crate::app::compare::reference::{Measure, Origin, Seen};
+use crate::app::compare::reference::{Measure, MeasureView, ReferenceOrigin};
 use crate::app::compare::rows;
 use crate::app::compare::rows::Asked;
-use crate::app::compare::second_side::Layout;
+use crate::app::compare::second_side::CompareLayout;
 use crate::app::document::Side;
 use crate::app::jobs::dialogs::Purpose;
 use crate::app::shell::status::samples;
@@ -24,7 +24,7 @@ use crate::render::Picture;
 impl App {
     /// The pictures that figures are told of: those of A and B, or the one in the viewport.
     pub(super) fn looked_at(&self) -> Vec<Arc<Picture>> {
-        match self.duel.pictures(&self.engine) {
+        match self.second_side.pictures(&self.engine) {
             Some(pictures) => pictures.to_vec(),
             None => self.shown_picture().cloned().into_iter().collect(),
         }
@@ -32,8 +32,10 @@ impl App {
 
     /// The error that is shown, where one is, and of which side, where there are two.
     fn error_view(&self) -> Option<(Measure, Option<Side>)> {
-        match self.duel.layout {
-            Layout::Error(measure, side) => Some((measure, self.duel.is_on().then_some(side))),
+        match self.second_side.layout {
+            CompareLayout::Error(measure, side) => {
+                Some((measure, self.second_side.is_on().then_some(side)))
+            }
             _ => None,
         }
     }
@@ -41,43 +43,45 @@ impl App {
     /// The map in place of the picture, while one is there.
     pub(super) fn map(&self) -> Option<&Map> {
         match self.error_view() {
-            Some((measure, side)) => self.yardstick.map(measure, side),
-            None => self.duel.map(),
+            Some((measure, side)) => self.reference.map(measure, side),
+            None => self.second_side.map(),
         }
     }
 
     /// The kinds of views that there are now.
-    pub(super) fn layouts(&self) -> Vec<Layout> {
-        Layout::kinds(self.duel.is_on(), self.yardstick.held().is_some())
+    pub(super) fn layouts(&self) -> Vec<CompareLayout> {
+        CompareLayout::kinds(self.second_side.is_on(), self.reference.held().is_some())
     }
 
     /// Brings figures, errors and maps in line with what is looked at.
     pub(super) fn update_measures(&mut self, ctx: &Context) {
-        if let Err(error) = self.yardstick.poll() {
+        if let Err(error) = self.reference.poll() {
             self.notices.failed(format!("The reference could not be used. {error}"));
         }
         let pictures = self.looked_at();
-        let area = pictures.first().and_then(|picture| self.rectangle.area(picture.size));
-        self.engine.set_shows_variance(self.duel.is_on() || area.is_some());
-        self.duel.update_part(ctx, pictures.clone(), area);
-        let seen = Seen {
+        let area = pictures.first().and_then(|picture| self.region.area(picture.size));
+        self.engine.set_shows_variance(self.second_side.is_on() || area.is_some());
+        self.second_side.update_part(ctx, pictures.clone(), area);
+        let seen = MeasureView {
             tone: self.editor.document.tone,
-            main: self.duel.main_side(),
+            main: self.second_side.main_side(),
             stored: self.versus,
-            is_snapshot: !self.duel.is_on() && self.snapshots.picture().is_some(),
+            is_snapshot: !self.second_side.is_on() && self.snapshots.picture().is_some(),
         };
-        self.yardstick.update(ctx, pictures, seen);
-        self.yardstick.update_map(ctx, self.error_view());
-        if matches!(self.duel.layout, Layout::Error(..)) && self.yardstick.held().is_none() {
-            self.duel.layout = Layout::default();
+        self.reference.update(ctx, pictures, seen);
+        self.reference.update_map(ctx, self.error_view());
+        if matches!(self.second_side.layout, CompareLayout::Error(..))
+            && self.reference.held().is_none()
+        {
+            self.second_side.layout = CompareLayout::default();
         }
     }
 
     /// Shows how A and B, the rectangle and the reference are looked at and what is known of them.
     pub(super) fn measure_rows(&mut self, ui: &mut Ui) {
-        let has_rectangle = self.rectangle.is_armed() || self.rectangle.is_set();
-        let has_reference = self.yardstick.held().is_some() || self.yardstick.is_loading();
-        if !(self.duel.is_on() || has_rectangle || has_reference) {
+        let has_rectangle = self.region.is_armed() || self.region.is_set();
+        let has_reference = self.reference.held().is_some() || self.reference.is_loading();
+        if !(self.second_side.is_on() || has_rectangle || has_reference) {
             return;
         }
         let panel = egui::Panel::bottom("compare").frame(theme::panel_frame());
@@ -85,17 +89,17 @@ impl App {
             let view = self.view_row(ui);
             let Some(picture) = self.looked_at().into_iter().next() else { return view };
             if has_rectangle {
-                let told = (self.duel.part(), self.yardstick.errors(), self.biased());
-                let rectangle = &mut self.rectangle;
+                let told = (self.second_side.part(), self.reference.errors(), self.biased());
+                let region = &mut self.region;
                 ui.horizontal_wrapped(|ui| {
-                    rows::rectangle(ui, rectangle, picture.size, told);
+                    rows::region(ui, region, picture.size, told);
                 });
             }
             if !has_reference {
                 return view;
             }
             let looked_at = (picture.size, &self.editor.document.settings);
-            let row = |ui: &mut Ui| rows::reference(ui, &self.yardstick, looked_at);
+            let row = |ui: &mut Ui| rows::reference(ui, &self.reference, looked_at);
             ui.horizontal_wrapped(row).inner.or(view)
         });
         match asked.inner {
@@ -116,9 +120,9 @@ impl App {
         if kinds.len() < 2 {
             return None;
         }
-        let of_two = self.duel.is_on();
+        let of_two = self.second_side.is_on();
         let row = |ui: &mut Ui| {
-            panel::layouts(ui, &mut self.duel.layout, (&kinds, of_two));
+            panel::layouts(ui, &mut self.second_side.layout, (&kinds, of_two));
             if !of_two {
                 return None;
             }
@@ -126,7 +130,7 @@ impl App {
             match self.other_size() {
                 Some(size) => rows::other_size(ui, size),
                 None => {
-                    panel::verdict(ui, self.duel.comparison(), self.biased());
+                    panel::verdict(ui, self.second_side.comparison(), self.biased());
                     None
                 }
             }
@@ -136,19 +140,19 @@ impl App {
 
     /// The size of the snapshot that is compared, where the live picture has another.
     fn other_size(&self) -> Option<UVec2> {
-        let size = self.duel.stored.as_ref()?.picture.as_ref()?.size;
+        let size = self.second_side.stored.as_ref()?.picture.as_ref()?.size;
         self.engine.picture().is_some_and(|live| live.size != size).then_some(size)
     }
 
     /// Which sides are biased.
     pub(super) fn biased(&self) -> [bool; 2] {
         let document = &self.editor.document;
-        [Side::A, Side::B].map(|side| panel::is_biased(side, document, &self.duel))
+        [Side::A, Side::B].map(|side| panel::is_biased(side, document, &self.second_side))
     }
 
     /// Takes a reference from there.
-    pub(super) fn take_reference(&mut self, ctx: &Context, origin: Origin) {
-        if let Err(error) = self.yardstick.load(ctx, origin) {
+    pub(super) fn take_reference(&mut self, ctx: &Context, origin: ReferenceOrigin) {
+        if let Err(error) = self.reference.load(ctx, origin) {
             self.notices.failed(error.to_string());
         }
     }
@@ -157,13 +161,15 @@ impl App {
     fn take_picture(&mut self, ctx: &Context) {
         let stored = self.snapshots.strip.shown_item();
         let stored = stored.map(|item| (item.record.name.clone(), self.snapshots.file(item)));
-        let engine = self.duel.edited(&self.engine);
+        let engine = self.second_side.edited(&self.engine);
         let origin = match (stored, engine.rendered(), engine.picture()) {
-            (Some((name, Some(file))), ..) => Origin::File(format!("snapshot {name}"), file),
+            (Some((name, Some(file))), ..) => {
+                ReferenceOrigin::File(format!("snapshot {name}"), file)
+            }
             (None, Some(settings), Some(picture)) if picture.complete => {
                 let spp = samples(picture.stats.samples_per_pixel);
                 let name = format!("the picture at {spp} spp");
-                Origin::Picture(name, picture.clone(), Box::new(settings.clone()))
+                ReferenceOrigin::Picture(name, picture.clone(), Box::new(settings.clone()))
             }
             _ => {
                 self.notices.failed(
@@ -178,19 +184,23 @@ impl App {
     /// Carries out one of the commands about rectangle and reference; whether it was one.
     pub(super) fn execute_measure(&mut self, ctx: &Context, command: Command) -> bool {
         match command {
-            Command::NextLayout => self.duel.layout = self.duel.layout.next(&self.layouts()),
-            Command::Rectangle => self.rectangle.arm(),
+            Command::NextLayout => {
+                self.second_side.layout = self.second_side.layout.next(&self.layouts())
+            }
+            Command::Rectangle => self.region.arm(),
             Command::SamplesHere => {
-                self.rectangle.is_alone = !self.rectangle.is_alone;
-                if !self.rectangle.is_set() {
-                    self.rectangle.arm();
-                    self.rectangle.is_alone = true;
+                self.region.is_alone = !self.region.is_alone;
+                if !self.region.is_set() {
+                    self.region.arm();
+                    self.region.is_alone = true;
                 }
             }
             Command::LoadReference => self.ask(ctx, Purpose::Reference),
             Command::PictureAsReference => self.take_picture(ctx),
-            Command::RemoveReference => self.yardstick.remove(),
-            Command::SaveComparison if self.duel.is_on() || self.yardstick.held().is_some() => {
+            Command::RemoveReference => self.reference.remove(),
+            Command::SaveComparison
+                if self.second_side.is_on() || self.reference.held().is_some() =>
+            {
                 self.ask(ctx, Purpose::SaveComparison);
             }
             Command::SaveComparison => self.notices.failed(
@@ -204,6 +214,6 @@ impl App {
 
     /// Loads a reference from a path.
     pub(super) fn load_reference(&mut self, ctx: &Context, path: PathBuf) {
-        self.take_reference(ctx, Origin::file(path));
+        self.take_reference(ctx, ReferenceOrigin::file(path));
     }
 }

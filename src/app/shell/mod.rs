@@ -30,15 +30,15 @@ use glam::{UVec2, Vec3A};
 
 use super::command::Command;
 
-use super::compare::reference::Yardstick;
-use super::compare::second_side::Duel;
+use super::compare::reference::MeasuredReference;
+use super::compare::second_side::SecondSide;
 use super::diagnostics::Diagnostics;
 use super::document::{Compared, Editor, Side};
-use super::jobs::dialogs::{Answer, Dialog, Dialogs, Purpose};
-use super::jobs::live_render::{Engine, News};
+use super::jobs::dialogs::{Dialog, DialogAnswer, Dialogs, Purpose};
+use super::jobs::live_render::{LiveRender, News};
 use super::picture::display;
 use super::picture::gizmo::Gizmo;
-use super::picture::region::Rectangle;
+use super::picture::region::PictureRegion;
 use super::picture::viewport::Viewport;
 use super::snapshots::Snapshots;
 use super::sweep::Sweep;
@@ -51,9 +51,9 @@ use crate::scene::{DEFAULT_SCENE, Note};
 use bars::PathBar;
 use frame_stats::FrameStats;
 use palette::Palette;
-use preferences::{Remembered, full_name};
+use preferences::{Preferences, full_name};
 use save::Saver;
-use start::Start;
+use start::StartRow;
 
 /// How the window is set up.
 #[derive(Clone, Debug, Default)]
@@ -76,8 +76,8 @@ pub struct Options {
 /// Everything behind the window. It needs a render state but no window, so tests can drive it.
 pub struct App {
     editor: Editor,
-    engine: Engine,
-    duel: Duel,
+    engine: LiveRender,
+    second_side: SecondSide,
     sweep: Sweep,
     viewport: Viewport,
     diagnostics: Diagnostics,
@@ -103,20 +103,20 @@ pub struct App {
     full_screen: bool,
     help: bool,
     /// What to begin with, while it is shown.
-    start: Option<Start>,
+    start: Option<StartRow>,
     /// The list of all commands, while it is open.
     palette: Option<Palette>,
     /// The folder of what outlasts a run.
     data: Option<PathBuf>,
-    remembered: Remembered,
-    kept: unsaved::Kept,
+    preferences: Preferences,
+    unsaved: unsaved::UnsavedChanges,
     largest: u32,
     stats: Option<FrameStats>,
     snapshots: Snapshots,
     /// The snapshot that a path is being asked for, where one was shown.
     subject: Option<String>,
-    rectangle: Rectangle,
-    yardstick: Yardstick,
+    region: PictureRegion,
+    reference: MeasuredReference,
     /// The side of the snapshot shown, while that is compared with the live picture.
     versus: Option<Side>,
     /// A dropped picture, until it is said what it is for.
@@ -133,20 +133,20 @@ impl App {
         theme::apply(ctx);
         display::install(state);
         let wake = ctx.clone();
-        let mut engine = Engine::new(options.threads, move || wake.request_repaint())?;
+        let mut engine = LiveRender::new(options.threads, move || wake.request_repaint())?;
         let is_plain = options.source.is_none();
         let source = options.source.unwrap_or_else(|| DEFAULT_SCENE.to_owned());
         engine.open(&source);
         let data = data::folder(options.data);
-        let remembered = data.as_deref().map(Remembered::read).unwrap_or_default();
-        let references = remembered.references.clone();
+        let preferences = data.as_deref().map(Preferences::read).unwrap_or_default();
+        let references = preferences.references.clone();
         let mut editor = Editor::default();
-        editor.document.tone = remembered.tone();
-        remembered.scale().inspect(|&scale| ctx.set_zoom_factor(scale));
+        editor.document.tone = preferences.tone();
+        preferences.scale().inspect(|&scale| ctx.set_zoom_factor(scale));
         Ok(Self {
             editor,
             engine,
-            duel: Duel::new(options.threads),
+            second_side: SecondSide::new(options.threads),
             sweep: Sweep::new(options.threads),
             viewport: Viewport::default(),
             diagnostics: Diagnostics::default(),
@@ -162,21 +162,21 @@ impl App {
             waiting: Vec::new(),
             source,
             notes: Vec::new(),
-            folded: remembered.folded,
-            sections: Sections::install(ctx, remembered.sections.clone()),
+            folded: preferences.folded,
+            sections: Sections::install(ctx, preferences.sections.clone()),
             full_screen: false,
             help: false,
-            start: (is_plain && remembered.start).then(Start::default),
+            start: (is_plain && preferences.start).then(StartRow::default),
             palette: None,
             largest: display::largest_size(state),
             stats,
             snapshots: Snapshots::new(ctx, data.clone())?,
             data,
-            remembered,
-            kept: unsaved::Kept::default(),
+            preferences,
+            unsaved: unsaved::UnsavedChanges::default(),
             subject: None,
-            rectangle: Rectangle::default(),
-            yardstick: Yardstick::new(options.threads, references)?,
+            region: PictureRegion::default(),
+            reference: MeasuredReference::new(options.threads, references)?,
             versus: None,
             dropped: None,
         })
@@ -188,23 +188,23 @@ impl App {
     }
 
     /// The render behind the picture.
-    pub fn engine(&self) -> &Engine {
+    pub fn engine(&self) -> &LiveRender {
         &self.engine
     }
 
     /// The other side of a comparison.
-    pub fn duel(&self) -> &Duel {
-        &self.duel
+    pub fn second_side(&self) -> &SecondSide {
+        &self.second_side
     }
 
     /// The rectangle that figures are told of.
-    pub fn rectangle(&self) -> &Rectangle {
-        &self.rectangle
+    pub fn region(&self) -> &PictureRegion {
+        &self.region
     }
 
     /// The reference and the errors against it.
-    pub fn yardstick(&self) -> &Yardstick {
-        &self.yardstick
+    pub fn reference(&self) -> &MeasuredReference {
+        &self.reference
     }
 
     /// Every strategy tried on the shot.
@@ -225,7 +225,7 @@ impl App {
             stats.frame();
         }
         let mut news = self.engine.poll();
-        news.extend(self.duel.poll());
+        news.extend(self.second_side.poll());
         self.take_in(&ctx, news);
         self.take_in_arrivals(&ctx);
         self.save_waiting(&ctx);
@@ -248,7 +248,7 @@ impl App {
         }
         self.bring_up_to_date(&ctx);
         self.watch_over_changes(&ctx);
-        self.remembered.scale = ctx.zoom_factor();
+        self.preferences.scale = ctx.zoom_factor();
     }
 
     /// Waits until the next frame may begin, before it takes in what there is.
@@ -275,7 +275,7 @@ impl App {
             match item {
                 News::Opened { source, settings, notes, reopened } => {
                     self.notes = notes;
-                    self.kept.opened(&source, &settings);
+                    self.unsaved.opened(&source, &settings);
                     self.gizmo = Gizmo::default();
                     self.editor.open(*settings, reopened.is_some());
                     self.viewport.zoom = Default::default();
@@ -284,8 +284,8 @@ impl App {
                     self.remember_file(&source);
                     self.source = self.name_of(source);
                     self.versus = None;
-                    self.rectangle.remove();
-                    if let Err(error) = self.yardstick.open(ctx, &full_name(&self.source)) {
+                    self.region.remove();
+                    if let Err(error) = self.reference.open(ctx, &full_name(&self.source)) {
                         self.notices.failed(error.to_string());
                     }
                     if let Some(Notice { level, text }) = reopened {
@@ -307,7 +307,7 @@ impl App {
             stats.shown(picture.generation);
         }
         for (path, result) in self.saver.poll() {
-            self.kept.written(&path, result.is_ok());
+            self.unsaved.written(&path, result.is_ok());
             match result {
                 Ok(()) => self.notices.done(format!("Saved {}", path.display())),
                 Err(error) => self.notices.failed(error.to_string()),
@@ -316,9 +316,9 @@ impl App {
         if let Some(answer) = self.dialog.as_ref().and_then(Dialog::poll) {
             self.dialog = None;
             match answer {
-                Answer::Chosen(purpose, path) => self.take_path(ctx, purpose, path),
-                Answer::Unavailable(purpose) => self.ask_typed(purpose),
-                Answer::Cancelled => {}
+                DialogAnswer::Chosen(purpose, path) => self.take_path(ctx, purpose, path),
+                DialogAnswer::Unavailable(purpose) => self.ask_typed(purpose),
+                DialogAnswer::Cancelled => {}
             }
         }
         let dropped = ctx.input(|input| input.raw.dropped_files.last().cloned());
@@ -339,15 +339,15 @@ impl App {
 
     fn bring_up_to_date(&mut self, ctx: &Context) {
         self.diagnostics.update(ctx, &mut self.engine);
-        self.duel.set_layer(self.diagnostics.wanted.layer);
+        self.second_side.set_layer(self.diagnostics.wanted.layer);
         self.update_versus();
         let Some(size) = self.film_size() else { return };
-        let alone = self.rectangle.alone(size);
+        let alone = self.region.alone(size);
         self.engine.focus(alone);
-        self.duel.focus(alone);
+        self.second_side.focus(alone);
         let mut news = Vec::new();
         let document = &self.editor.document;
-        match self.duel.update(ctx, document, &mut self.engine, size) {
+        match self.second_side.update(ctx, document, &mut self.engine, size) {
             Ok(more) => news.extend(more),
             Err(error) => {
                 self.notices.failed(error.to_string());

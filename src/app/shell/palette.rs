@@ -19,7 +19,7 @@ pub struct Palette {
 
 /// What became of the palette.
 #[derive(Debug, PartialEq, Eq)]
-pub enum Choice {
+pub enum PaletteChoice {
     /// It is still open.
     Pending,
     /// A command was chosen.
@@ -30,7 +30,7 @@ pub enum Choice {
 
 impl Palette {
     /// Shows it over the upper part of the picture.
-    pub fn show(&mut self, ctx: &Context) -> Choice {
+    pub fn show(&mut self, ctx: &Context) -> PaletteChoice {
         let mut open = true;
         let window = Window::new("All commands")
             .open(&mut open)
@@ -40,9 +40,9 @@ impl Palette {
         let shown = window.show(ctx, |ui| self.contents(ui));
         let left = !open || ctx.input(|input| input.key_pressed(Key::Escape));
         match shown.and_then(|shown| shown.inner) {
-            Some(Some(command)) => Choice::Done(command),
-            _ if left => Choice::Left,
-            _ => Choice::Pending,
+            Some(Some(command)) => PaletteChoice::Done(command),
+            _ if left => PaletteChoice::Left,
+            _ => PaletteChoice::Pending,
         }
     }
 

@@ -58,7 +58,7 @@ impl App {
         let wake = ctx.clone();
         let path = purpose.complete(path, &self.suggested_name(purpose));
         if let Content::Scene(settings) = &content {
-            self.kept.writes(&path, settings.clone());
+            self.unsaved.writes(&path, settings.clone());
         }
         if let Err(error) = self.saver.start(path, content, move || wake.request_repaint()) {
             self.notices.failed(error.to_string());
@@ -71,7 +71,7 @@ impl App {
             return self.stored_content(purpose);
         }
         let document = &self.editor.document;
-        let engine = self.duel.edited(&self.engine);
+        let engine = self.second_side.edited(&self.engine);
         let settings = engine.rendered()?;
         match purpose {
             Purpose::Open | Purpose::Reference => None,

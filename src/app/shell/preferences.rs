@@ -21,7 +21,7 @@ const REFERENCES: usize = 20;
 /// What is remembered.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Remembered {
+pub struct Preferences {
     /// Files that were open, the last one first.
     pub recent: Vec<String>,
     /// The files of the references of scenes, the one that was loaded last first.
@@ -44,7 +44,7 @@ pub struct Remembered {
     tint: f32,
 }
 
-impl Default for Remembered {
+impl Default for Preferences {
     fn default() -> Self {
         Self {
             recent: Vec::new(),
@@ -61,7 +61,7 @@ impl Default for Remembered {
     }
 }
 
-impl Remembered {
+impl Preferences {
     /// What was remembered in `data`. What cannot be read is as good as nothing: no setting of the
     /// window is worth a complaint at its start.
     pub fn read(data: &Path) -> Self {
@@ -148,30 +148,30 @@ mod tests {
     fn what_is_written_is_remembered_and_nonsense_is_nothing() {
         let folder = tempfile::tempdir().unwrap();
         let data = folder.path().join("data");
-        assert_eq!(Remembered::read(&data), Remembered::default());
-        assert_eq!(Remembered::default().tone(), Tone::default());
+        assert_eq!(Preferences::read(&data), Preferences::default());
+        assert_eq!(Preferences::default().tone(), Tone::default());
         let (white, tint, curve) = (3200.0, 12.0, ToneCurve::Agx);
         let tone = Tone { exposure: -1.5, white, tint, curve, ..Tone::default() };
-        let mut remembered = Remembered { folded: true, ..Remembered::default() };
-        remembered.note_tone(Tone { channel: Channel::FalseColor, ..tone });
-        remembered.note("/shots/torch.toml");
-        remembered.write(&data).unwrap();
-        let again = Remembered::read(&data);
-        assert_eq!((again.tone(), &again), (tone, &remembered));
+        let mut preferences = Preferences { folded: true, ..Preferences::default() };
+        preferences.note_tone(Tone { channel: Channel::FalseColor, ..tone });
+        preferences.note("/shots/torch.toml");
+        preferences.write(&data).unwrap();
+        let again = Preferences::read(&data);
+        assert_eq!((again.tone(), &again), (tone, &preferences));
         std::fs::write(data.join(FILE), "{ \"folded\": 7 }").unwrap();
-        assert_eq!(Remembered::read(&data), Remembered::default());
+        assert_eq!(Preferences::read(&data), Preferences::default());
     }
 
     #[test]
     fn the_last_file_comes_first_and_each_once() {
-        let mut remembered = Remembered::default();
+        let mut preferences = Preferences::default();
         for index in 0..12 {
-            remembered.note(&format!("/shots/{index}.toml"));
+            preferences.note(&format!("/shots/{index}.toml"));
         }
-        remembered.note("/shots/5.toml");
-        remembered.note("builtin:torch");
-        assert_eq!(remembered.recent.len(), RECENT);
-        assert_eq!(remembered.recent[..2], ["/shots/5.toml", "/shots/11.toml"]);
-        assert_eq!(remembered.recent.iter().filter(|path| path.contains("/5.")).count(), 1);
+        preferences.note("/shots/5.toml");
+        preferences.note("builtin:torch");
+        assert_eq!(preferences.recent.len(), RECENT);
+        assert_eq!(preferences.recent[..2], ["/shots/5.toml", "/shots/11.toml"]);
+        assert_eq!(preferences.recent.iter().filter(|path| path.contains("/5.")).count(), 1);
     }
 }

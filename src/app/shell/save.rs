@@ -8,7 +8,7 @@ use std::sync::{Arc, mpsc};
 use super::export::SavedView;
 use crate::error::{Error, Result};
 use crate::files;
-use crate::image::exr::{self, Header};
+use crate::image::exr::{self, SnapshotHeader};
 use crate::image::png;
 use crate::image::tone::Tone;
 use crate::render::publish::resolve;
@@ -149,10 +149,10 @@ pub fn receive(path: &Path, film: &mpsc::Receiver<Film>) -> Result<Film> {
 }
 
 /// What the snapshot says about how it came about, in so many seconds and so many of CPU time.
-pub fn header(settings: &Settings, [seconds, cpu_seconds]: [f64; 2]) -> Result<Header> {
+pub fn header(settings: &Settings, [seconds, cpu_seconds]: [f64; 2]) -> Result<SnapshotHeader> {
     let strategy = toml::to_string(&settings.strategy)
         .map_err(|error| Error::invalid("", "strategy", error.to_string()))?;
-    Ok(Header {
+    Ok(SnapshotHeader {
         scene: scene::to_toml(settings, None)?,
         strategy,
         seed: settings.film.seed,
@@ -160,6 +160,6 @@ pub fn header(settings: &Settings, [seconds, cpu_seconds]: [f64; 2]) -> Result<H
         wall_seconds: seconds,
         cpu_seconds_render: cpu_seconds,
         files: scene::fingerprints(settings)?,
-        ..Header::default()
+        ..SnapshotHeader::default()
     })
 }

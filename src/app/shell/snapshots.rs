@@ -7,11 +7,11 @@ use egui::{Context, Ui};
 
 use super::App;
 use crate::app::command::Command;
-use crate::app::compare::second_side::Stored;
+use crate::app::compare::second_side::StoredSide;
 use crate::app::document::Side;
 use crate::app::jobs::dialogs::Purpose;
 use crate::app::shell::save::Content;
-use crate::app::snapshots::{Item, Keep, strategy};
+use crate::app::snapshots::{Keep, StripItem, strategy};
 use crate::app::ui::theme;
 use crate::render::Picture;
 
@@ -31,7 +31,7 @@ impl App {
     }
 
     fn keep(&mut self) {
-        let engine = self.duel.edited(&self.engine);
+        let engine = self.second_side.edited(&self.engine);
         let (Some(settings), Some(picture)) = (engine.rendered(), engine.picture()) else {
             self.notices.failed("There is no picture to keep yet.");
             return;
@@ -125,14 +125,14 @@ impl App {
             // An edit or an undo began a comparison of strategies.
             self.versus = None;
         }
-        self.duel.stored = self.versus.zip(shown).map(|(side, item)| Stored {
+        self.second_side.stored = self.versus.zip(shown).map(|(side, item)| StoredSide {
             side,
             name: item.record.name.clone(),
             picture: item.picture().filter(|picture| !picture.variance.is_empty()).cloned(),
             is_biased: item.record.strategy.ends_with("biased"),
         });
         // Noise is told of both sides, and of a rectangle.
-        let measures = self.versus.is_some() || self.rectangle.is_set();
+        let measures = self.versus.is_some() || self.region.is_set();
         self.snapshots.strip.wants_variance = measures;
     }
 
@@ -144,7 +144,7 @@ impl App {
     }
 
     /// The snapshot that is to be saved, where that is not the live picture.
-    fn subject(&self) -> Option<&Item> {
+    fn subject(&self) -> Option<&StripItem> {
         self.subject.as_ref().and_then(|id| self.snapshots.strip.find(id))
     }
 

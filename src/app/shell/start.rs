@@ -56,7 +56,7 @@ const CARDS: [Card; 7] = [
 
 /// What was chosen.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Choice {
+pub enum StartChoice {
     /// To open a file or an embedded scene.
     Open(String),
     /// A command.
@@ -67,14 +67,19 @@ pub enum Choice {
 
 /// The row, while it is open.
 #[derive(Default)]
-pub struct Start {
+pub struct StartRow {
     /// The small pictures on the graphics card, once they are there.
     pictures: Vec<Option<TextureHandle>>,
 }
 
-impl Start {
+impl StartRow {
     /// Shows the row; `recent` are the files of before, `again` whether it comes at each start.
-    pub fn show(&mut self, ui: &mut Ui, recent: &[String], again: &mut bool) -> Option<Choice> {
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        recent: &[String],
+        again: &mut bool,
+    ) -> Option<StartChoice> {
         let mut choice = None;
         head(ui, again, &mut choice);
         ui.add_space(space::TIGHT);
@@ -88,7 +93,7 @@ impl Start {
         choice
     }
 
-    fn cards(&mut self, ui: &mut Ui, choice: &mut Option<Choice>) {
+    fn cards(&mut self, ui: &mut Ui, choice: &mut Option<StartChoice>) {
         if self.pictures.is_empty() {
             self.pictures = CARDS.iter().map(|card| picture(ui.ctx(), card)).collect();
         }
@@ -99,7 +104,7 @@ impl Start {
                 ui.add_space(2.0);
                 for (&(name, words, _), picture) in CARDS.iter().zip(&self.pictures) {
                     if card(ui, name, picture.as_ref()).on_hover_text(words).clicked() {
-                        *choice = Some(Choice::Open(format!("builtin:{name}")));
+                        *choice = Some(StartChoice::Open(format!("builtin:{name}")));
                     }
                 }
             });
@@ -108,13 +113,13 @@ impl Start {
 }
 
 /// The line above: what the hand can do, and how to be rid of the row.
-fn head(ui: &mut Ui, again: &mut bool, choice: &mut Option<Choice>) {
+fn head(ui: &mut Ui, again: &mut bool, choice: &mut Option<StartChoice>) {
     ui.horizontal(|ui| {
         ui.label(RichText::new("Start with a scene").color(color::TEXT_STRONG));
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             let help = format!("Close this row.  [Esc, {}]", key_of(ui, Command::Start));
             if ui.button("Close").on_hover_text(help).clicked() {
-                *choice = Some(Choice::Close);
+                *choice = Some(StartChoice::Close);
             }
             ui.checkbox(again, "Show at start")
                 .on_hover_text("Show this row whenever Flambeau starts without a file.");
@@ -128,18 +133,18 @@ fn head(ui: &mut Ui, again: &mut bool, choice: &mut Option<Choice>) {
 }
 
 /// The column of files.
-fn files(ui: &mut Ui, recent: &[String], choice: &mut Option<Choice>) {
+fn files(ui: &mut Ui, recent: &[String], choice: &mut Option<StartChoice>) {
     let open = Command::Open;
     let help = format!("{}  [{}]", open.tooltip(), key_of(ui, open));
     if ui.button(open.text()).on_hover_text(help).clicked() {
-        *choice = Some(Choice::Command(open));
+        *choice = Some(StartChoice::Command(open));
     }
     for path in recent.iter().take(MOST_FILES) {
         let name = std::path::Path::new(path).file_name().unwrap_or_default().to_string_lossy();
         let text = RichText::new(name).color(color::TEXT);
         let button = egui::Button::new(text).frame(false).truncate();
         if ui.add(button).on_hover_text(path).clicked() {
-            *choice = Some(Choice::Open(path.clone()));
+            *choice = Some(StartChoice::Open(path.clone()));
         }
     }
 }

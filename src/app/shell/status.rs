@@ -6,10 +6,10 @@ use glam::UVec2;
 
 use crate::app::command::Command;
 use crate::app::compare::panel;
-use crate::app::jobs::live_render::Engine;
+use crate::app::jobs::live_render::LiveRender;
 use crate::app::panels::Panel;
 use crate::app::picture::viewport::Viewport;
-use crate::app::snapshots::{Item, Snapshots};
+use crate::app::snapshots::{Snapshots, StripItem};
 use crate::app::ui::theme::{color, space};
 use crate::app::ui::widgets::{count, finite};
 use crate::image::tone::{Channel, Tone};
@@ -24,7 +24,7 @@ const PROBE_WIDTH: f32 = 280.0;
 pub fn show(
     ui: &mut Ui,
     panel: &mut Panel<'_>,
-    engine: &Engine,
+    engine: &LiveRender,
     viewport: &Viewport,
     snapshots: &Snapshots,
 ) {
@@ -39,7 +39,7 @@ pub fn show(
         if ui.add(button).on_hover_text(format!("{help}  [{key}]")).clicked() {
             panel.commands.push(Command::PauseResume);
         }
-        let stored = snapshots.strip.shown_item().filter(|_| panel.duel.stored.is_none());
+        let stored = snapshots.strip.shown_item().filter(|_| panel.second_side.stored.is_none());
         if stored.is_none() {
             bias(ui, panel);
         }
@@ -71,7 +71,7 @@ pub fn show(
 
 /// A picture that will never be quite right says so; of two, which one it is.
 fn bias(ui: &mut Ui, panel: &Panel<'_>) {
-    if let Some(text) = panel::bias(&panel.editor.document, panel.duel) {
+    if let Some(text) = panel::bias(&panel.editor.document, panel.second_side) {
         let help = "Ray marching is on (Strategy, Advanced): this picture is not quite right, and \
                     more samples will not mend that.";
         ui.label(RichText::new(text).color(color::WARNING)).on_hover_text(help);
@@ -79,7 +79,7 @@ fn bias(ui: &mut Ui, panel: &Panel<'_>) {
 }
 
 /// Of a snapshot in place of the live picture.
-fn stored_figures(ui: &mut Ui, item: &Item) {
+fn stored_figures(ui: &mut Ui, item: &StripItem) {
     let record = &item.record;
     if item.picture().is_none() {
         ui.label(RichText::new(format!("Reading {} …", record.name)).color(color::ACCENT));
@@ -96,7 +96,7 @@ pub fn samples(spp: f64) -> String {
     if spp < 10.0 { format!("{spp:.1}") } else { format!("{spp:.0}") }
 }
 
-fn progress(ui: &mut Ui, stats: &RenderStats, engine: &Engine, turns: usize) {
+fn progress(ui: &mut Ui, stats: &RenderStats, engine: &LiveRender, turns: usize) {
     let spp = samples(stats.samples_per_pixel);
     figure(ui, &spp, "spp", "Samples per pixel so far.", 38.0);
     figure(ui, &seconds(stats.seconds), "", "Time spent on this picture.", 50.0);
@@ -128,7 +128,7 @@ fn progress(ui: &mut Ui, stats: &RenderStats, engine: &Engine, turns: usize) {
 }
 
 /// How long a render with an end will take to get there, one of so many that take turns.
-fn ending(ui: &mut Ui, stats: &RenderStats, engine: &Engine, turns: usize) {
+fn ending(ui: &mut Ui, stats: &RenderStats, engine: &LiveRender, turns: usize) {
     let wanted = engine.built().map_or(0, |built| built.settings.film.spp);
     // A rectangle that gets all samples has another pace than the picture.
     let is_whole = engine.picture().is_some_and(|picture| picture.focus.is_none());

@@ -19,7 +19,7 @@ impl App {
             self.sweep.update(settings, &self.engine, size, move || wake.request_repaint());
         let held = self.sweep.holds(settings);
         self.engine.set_held(held);
-        self.duel.set_held(held);
+        self.second_side.set_held(held);
         if let Err(error) = updated {
             self.notices.failed(error.to_string());
         }

@@ -8,19 +8,19 @@ use super::App;
 use crate::app::jobs::dialogs::Purpose;
 use crate::app::jobs::live_render::same_matter;
 use crate::app::shell::unsaved_bar;
-use crate::app::shell::unsaved_bar::{Answer, Losing};
+use crate::app::shell::unsaved_bar::{LosingAction, UnsavedAnswer};
 use crate::app::ui::theme;
 use crate::scene::Settings;
 
 /// The scene as it is on the disk, or on its way there.
 #[derive(Debug, Default)]
-pub(super) struct Kept {
+pub(super) struct UnsavedChanges {
     /// As it was opened or saved last.
     saved: Settings,
     /// Scenes that are being written.
     writing: Vec<(PathBuf, Settings)>,
     /// What would lose changes, while it is asked about.
-    pub(super) losing: Option<Losing>,
+    pub(super) losing: Option<LosingAction>,
     /// Whether the keyboard is still to go to that.
     is_fresh: bool,
     /// Whether it goes on as soon as they are saved.
@@ -33,7 +33,7 @@ pub(super) struct Kept {
     is_own: bool,
 }
 
-impl Kept {
+impl UnsavedChanges {
     /// A scene was opened from `source`.
     pub(super) fn opened(&mut self, source: &str, settings: &Settings) {
         self.saved = settings.clone();
@@ -42,7 +42,7 @@ impl Kept {
         self.is_own = ending.is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
     }
 
-    fn ask(&mut self, losing: Losing) {
+    fn ask(&mut self, losing: LosingAction) {
         (self.losing, self.is_fresh) = (Some(losing), true);
     }
 
@@ -64,7 +64,7 @@ impl Kept {
     /// Whether `settings` have changes that a file has not. Strategies are tried on and off all the
     /// time and change no picture, and a film that follows the window has no size of its own. Who
     /// looks around in a scene that Flambeau brings along, or in a bare volume, has made nothing yet.
-    fn misses(&self, settings: &Settings, keep_size: bool) -> bool {
+    fn differs_from(&self, settings: &Settings, keep_size: bool) -> bool {
         let mut film = self.saved.film;
         if !keep_size {
             film.size = settings.film.size;
@@ -78,7 +78,7 @@ impl App {
     /// Whether the scene has changes that no file has.
     pub fn has_unsaved_changes(&self) -> bool {
         let document = &self.editor.document;
-        self.kept.misses(&document.settings, document.keep_size)
+        self.unsaved.differs_from(&document.settings, document.keep_size)
     }
 
     /// Says in the title of the window what is open and whether it was changed, and asks before a
@@ -86,14 +86,14 @@ impl App {
     pub(super) fn watch_over_changes(&mut self, ctx: &Context) {
         let mark = if self.has_unsaved_changes() { "* " } else { "" };
         let title = format!("{mark}{} – Flambeau", self.title());
-        if title != self.kept.title {
+        if title != self.unsaved.title {
             ctx.send_viewport_cmd(ViewportCommand::Title(title.clone()));
-            self.kept.title = title;
+            self.unsaved.title = title;
         }
         let closes = ctx.input(|input| input.viewport().close_requested());
-        if closes && !self.kept.allowed && self.has_unsaved_changes() {
+        if closes && !self.unsaved.allowed && self.has_unsaved_changes() {
             ctx.send_viewport_cmd(ViewportCommand::CancelClose);
-            self.kept.ask(Losing::Close);
+            self.unsaved.ask(LosingAction::Close);
         }
     }
 
@@ -103,7 +103,7 @@ impl App {
         let is_there = source.starts_with("builtin:") || Path::new(source).exists();
         if is_there && self.has_unsaved_changes() {
             self.path_bar = None;
-            self.kept.ask(Losing::Open(source.to_owned()));
+            self.unsaved.ask(LosingAction::Open(source.to_owned()));
         } else {
             self.open(source);
         }
@@ -111,40 +111,40 @@ impl App {
 
     /// The bar that asks.
     pub(super) fn unsaved_row(&mut self, ui: &mut Ui) {
-        let Some(losing) = self.kept.losing.clone() else { return };
+        let Some(losing) = self.unsaved.losing.clone() else { return };
         if !self.has_unsaved_changes() {
             // Saved as was asked for, or else taken back.
-            match std::mem::take(&mut self.kept.saves_first) {
+            match std::mem::take(&mut self.unsaved.saves_first) {
                 true => self.go_on(ui.ctx(), losing),
-                false => self.kept.losing = None,
+                false => self.unsaved.losing = None,
             }
             return;
         }
         let title = self.title();
         let row = egui::Panel::bottom("unsaved").frame(theme::panel_frame());
-        let fresh = &mut self.kept.is_fresh;
+        let fresh = &mut self.unsaved.is_fresh;
         match row.show(ui, |ui| unsaved_bar::ask(ui, &title, &losing, fresh)).inner {
-            Some(Answer::Save) => {
-                self.kept.saves_first = true;
+            Some(UnsavedAnswer::Save) => {
+                self.unsaved.saves_first = true;
                 self.ask(&ui.ctx().clone(), Purpose::SaveScene);
             }
-            Some(Answer::Discard) => self.go_on(ui.ctx(), losing),
-            Some(Answer::Stay) => self.stay(),
+            Some(UnsavedAnswer::Discard) => self.go_on(ui.ctx(), losing),
+            Some(UnsavedAnswer::Stay) => self.stay(),
             None => {}
         }
     }
 
     /// Goes on working on what is open.
     pub(super) fn stay(&mut self) {
-        (self.kept.losing, self.kept.saves_first) = (None, false);
+        (self.unsaved.losing, self.unsaved.saves_first) = (None, false);
     }
 
-    fn go_on(&mut self, ctx: &Context, losing: Losing) {
-        (self.kept.losing, self.kept.saves_first) = (None, false);
+    fn go_on(&mut self, ctx: &Context, losing: LosingAction) {
+        (self.unsaved.losing, self.unsaved.saves_first) = (None, false);
         match losing {
-            Losing::Open(source) => self.open(&source),
-            Losing::Close => {
-                self.kept.allowed = true;
+            LosingAction::Open(source) => self.open(&source),
+            LosingAction::Close => {
+                self.unsaved.allowed = true;
                 ctx.send_viewport_cmd(ViewportCommand::Close);
             }
         }
@@ -155,7 +155,7 @@ impl App {
         if self.snapshots.name_of(Path::new(source)).is_some() {
             return;
         }
-        self.remembered.note(source);
+        self.preferences.note(source);
         if let Err(error) = self.write_remembered() {
             self.notices.failed(error.to_string());
         }
@@ -163,12 +163,12 @@ impl App {
 
     /// Writes what the window remembers.
     pub(super) fn write_remembered(&mut self) -> crate::error::Result<()> {
-        self.remembered.folded = self.folded;
-        self.remembered.sections = self.sections.chosen();
-        self.remembered.note_tone(self.editor.document.tone);
-        self.remembered.note_references(self.yardstick.remembered());
+        self.preferences.folded = self.folded;
+        self.preferences.sections = self.sections.chosen();
+        self.preferences.note_tone(self.editor.document.tone);
+        self.preferences.note_references(self.reference.preferences());
         match &self.data {
-            Some(data) => self.remembered.write(data),
+            Some(data) => self.preferences.write(data),
             None => Ok(()),
         }
     }
@@ -182,39 +182,42 @@ mod tests {
     #[test]
     fn changes_are_what_no_file_has() {
         let mut settings = Settings::default();
-        let mut kept = Kept::default();
-        kept.opened("torch.toml", &settings);
+        let mut unsaved = UnsavedChanges::default();
+        unsaved.opened("torch.toml", &settings);
         settings.strategy = Preset::Baseline.strategy();
         settings.film.size = [7, 7];
-        assert!(!kept.misses(&settings, false), "strategies and the window's size are none");
-        assert!(kept.misses(&settings, true));
+        assert!(
+            !unsaved.differs_from(&settings, false),
+            "strategies and the window's size are none"
+        );
+        assert!(unsaved.differs_from(&settings, true));
         settings.camera.fov_x += 1.0;
-        assert!(kept.misses(&settings, false));
+        assert!(unsaved.differs_from(&settings, false));
         let path = Path::new("torch.toml");
-        kept.writes(path, settings.clone());
-        assert!(kept.misses(&settings, false), "not there yet");
-        kept.written(path, false);
-        assert!(kept.misses(&settings, false), "it failed");
-        kept.writes(path, settings.clone());
-        kept.written(path, true);
-        assert!(!kept.misses(&settings, false));
+        unsaved.writes(path, settings.clone());
+        assert!(unsaved.differs_from(&settings, false), "not there yet");
+        unsaved.written(path, false);
+        assert!(unsaved.differs_from(&settings, false), "it failed");
+        unsaved.writes(path, settings.clone());
+        unsaved.written(path, true);
+        assert!(!unsaved.differs_from(&settings, false));
     }
 
     #[test]
     fn looking_around_in_what_is_nobodys_own_is_no_change() {
         let mut settings = Settings::default();
-        let mut kept = Kept::default();
+        let mut unsaved = UnsavedChanges::default();
         for (source, is_own) in [("builtin:torch", false), ("smoke.vdb", false), ("a.toml", true)] {
-            kept.opened(source, &settings);
+            unsaved.opened(source, &settings);
             settings.camera.fov_x += 1.0;
-            assert_eq!(kept.misses(&settings, false), is_own, "{source}");
+            assert_eq!(unsaved.differs_from(&settings, false), is_own, "{source}");
             settings.path.max_scatters += 1;
-            assert!(kept.misses(&settings, false), "{source}");
+            assert!(unsaved.differs_from(&settings, false), "{source}");
         }
-        kept.opened("builtin:torch", &settings);
-        kept.writes(Path::new("a.toml"), settings.clone());
-        kept.written(Path::new("a.toml"), true);
+        unsaved.opened("builtin:torch", &settings);
+        unsaved.writes(Path::new("a.toml"), settings.clone());
+        unsaved.written(Path::new("a.toml"), true);
         settings.camera.fov_x += 1.0;
-        assert!(kept.misses(&settings, false), "a file of one's own by now");
+        assert!(unsaved.differs_from(&settings, false), "a file of one's own by now");
     }
 }

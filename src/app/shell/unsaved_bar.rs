@@ -6,7 +6,7 @@ use crate::app::ui::theme::color;
 
 /// What would lose them.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Losing {
+pub enum LosingAction {
     /// The window would close.
     Close,
     /// A scene, a volume or a snapshot would take their place.
@@ -15,7 +15,7 @@ pub enum Losing {
 
 /// What the user says to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Answer {
+pub enum UnsavedAnswer {
     /// Save the scene first.
     Save,
     /// Go on without.
@@ -26,15 +26,20 @@ pub enum Answer {
 
 /// Asks about the changes of the scene called `title`. A `fresh` question takes the keyboard, and
 /// is fresh until it has.
-pub fn ask(ui: &mut Ui, title: &str, losing: &Losing, fresh: &mut bool) -> Option<Answer> {
+pub fn ask(
+    ui: &mut Ui,
+    title: &str,
+    losing: &LosingAction,
+    fresh: &mut bool,
+) -> Option<UnsavedAnswer> {
     let discard = match losing {
-        Losing::Close => "Close without saving",
-        Losing::Open(_) => "Open without saving",
+        LosingAction::Close => "Close without saving",
+        LosingAction::Open(_) => "Open without saving",
     };
     let buttons = [
-        ("Save scene…", Answer::Save, "Save every setting as a scene file first."),
-        (discard, Answer::Discard, "The changes are lost."),
-        ("Cancel", Answer::Stay, "Go on working on it."),
+        ("Save scene…", UnsavedAnswer::Save, "Save every setting as a scene file first."),
+        (discard, UnsavedAnswer::Discard, "The changes are lost."),
+        ("Cancel", UnsavedAnswer::Stay, "Go on working on it."),
     ];
     ui.horizontal_wrapped(|ui| {
         let text = format!("{title} has changes that are not saved.");
@@ -45,7 +50,7 @@ pub fn ask(ui: &mut Ui, title: &str, losing: &Losing, fresh: &mut bool) -> Optio
             if button.clicked() {
                 answer = Some(says);
             }
-            if *fresh && says == Answer::Save {
+            if *fresh && says == UnsavedAnswer::Save {
                 *fresh = !button.has_focus();
                 button.request_focus();
             }

@@ -9,7 +9,7 @@ use crate::app::diagnostics::Legend;
 use crate::app::document::Side;
 use crate::app::picture::viewport::Shown;
 use crate::app::shell::export::SavedView;
-use crate::image::export::Table;
+use crate::image::export::FigureTable;
 
 impl App {
     /// The view as it is.
@@ -24,7 +24,7 @@ impl App {
             shown,
             names,
             legend,
-            area: self.duel.part().map(|part| part.area),
+            area: self.second_side.part().map(|part| part.area),
             words: self.words(),
             tables: self.tables(),
         }
@@ -40,8 +40,12 @@ impl App {
     /// What A and B are; nothing where there is one picture.
     fn side_titles(&self) -> Vec<String> {
         let document = &self.editor.document;
-        let sides = self.duel.is_on().then_some([Side::A, Side::B]);
-        sides.into_iter().flatten().map(|side| side_title(side, document, &self.duel)).collect()
+        let sides = self.second_side.is_on().then_some([Side::A, Side::B]);
+        sides
+            .into_iter()
+            .flatten()
+            .map(|side| side_title(side, document, &self.second_side))
+            .collect()
     }
 
     /// What A and B say about each other, in all of the picture and in the rectangle.
@@ -51,11 +55,11 @@ impl App {
         if !titles.is_empty() {
             words.push(format!("{}.", titles.join(". ")));
         }
-        if let Some(comparison) = self.duel.comparison() {
+        if let Some(comparison) = self.second_side.comparison() {
             words.push(format!("{}.", comparison.sentence()));
             words.extend(disagreement(comparison, self.biased()));
         }
-        if let Some(part) = self.duel.part() {
+        if let Some(part) = self.second_side.part() {
             let told = part.comparison.as_ref().map(|both| format!(": {}", both.sentence()));
             let title = rectangle_title(&part.area);
             words.push(format!("{title}{}.", told.unwrap_or_default()));
@@ -64,17 +68,17 @@ impl App {
     }
 
     /// The figures of all of the picture and of the rectangle.
-    fn tables(&self) -> Vec<Table> {
+    fn tables(&self) -> Vec<FigureTable> {
         let names = names(self.looked_at().len());
-        let errors = self.yardstick.errors();
-        let sides = self.duel.comparison().map(|both| of_sides(&both.sides));
+        let errors = self.reference.errors();
+        let sides = self.second_side.comparison().map(|both| of_sides(&both.sides));
         let mut columns = sides.unwrap_or_default();
         columns.extend(errors.iter().flat_map(|errors| of_errors(errors, None)));
         let mut tables = Vec::new();
         if !columns.is_empty() {
             tables.push(table("", names, &columns));
         }
-        if let Some(part) = self.duel.part() {
+        if let Some(part) = self.second_side.part() {
             tables.push(table("rectangle", names, &of_part(part, errors)));
         }
         tables

@@ -9,7 +9,7 @@ use std::time::Duration;
 use egui::ColorImage;
 
 use super::record::Record;
-use super::store::{Entry, Fresh, Listing, Store};
+use super::store::{Fresh, Listing, Store, StoredSnapshot};
 use super::thumbnail::{self, Thumbnail};
 use crate::app::shell::save::{header, receive};
 use crate::error::{Error, Result};
@@ -25,7 +25,7 @@ use crate::scene::Settings;
 const LEFT_BEHIND: Duration = Duration::from_secs(3600);
 
 /// What the disk is asked for.
-pub enum Job {
+pub enum DiskJob {
     /// Everything that is there, after what was left behind is removed.
     List,
     /// Keep a picture.
@@ -39,9 +39,9 @@ pub enum Job {
     /// Remove these for good, which were deleted.
     Forget(Vec<String>),
     /// Read the picture of this snapshot.
-    Read(Entry),
+    Read(StoredSnapshot),
     /// Read it with the variance of its pixels, which takes as much memory as its film meanwhile.
-    ReadWithVariance(Entry),
+    ReadWithVariance(StoredSnapshot),
 }
 
 /// A picture to keep.
@@ -61,20 +61,20 @@ pub struct Keep {
 }
 
 /// A snapshot with its small picture.
-pub type Pictured = (Entry, Option<ColorImage>);
+pub type SnapshotWithThumbnail = (StoredSnapshot, Option<ColorImage>);
 
 /// What the disk has to say.
-pub enum Report {
+pub enum DiskReport {
     /// What is there, and what else is.
-    Listed(Vec<Pictured>, Vec<String>),
+    Listed(Vec<SnapshotWithThumbnail>, Vec<String>),
     /// A picture is kept.
     Kept {
         /// As it is on the disk.
-        kept: Pictured,
+        kept: SnapshotWithThumbnail,
         /// The picture.
         picture: Arc<Picture>,
         /// What had to go so that the rest keeps within the limit.
-        gone: Vec<Entry>,
+        gone: Vec<StoredSnapshot>,
     },
     /// A picture could not be kept.
     NotKept(String),
@@ -87,26 +87,26 @@ pub enum Report {
 }
 
 /// The handles of the threads. Dropping it waits for what is being written.
-pub struct Clerk {
-    writer: Desk,
-    reader: Desk,
-    reports: mpsc::Receiver<Report>,
+pub struct DiskWorkers {
+    writer: DiskThread,
+    reader: DiskThread,
+    reports: mpsc::Receiver<DiskReport>,
 }
 
 /// One of the threads.
-struct Desk {
-    jobs: Option<mpsc::Sender<Job>>,
+struct DiskThread {
+    jobs: Option<mpsc::Sender<DiskJob>>,
     thread: Option<JoinHandle<()>>,
 }
 
 /// What a thread works with.
-struct Bench {
+struct WorkerContext {
     store: Option<Store>,
     limit: u64,
-    reports: mpsc::Sender<Report>,
+    reports: mpsc::Sender<DiskReport>,
 }
 
-impl Clerk {
+impl DiskWorkers {
     /// Starts the threads on `store` (`None`: there is no place for one), which is to take `limit`
     /// bytes at most. `on_report` is called after each report.
     ///
@@ -119,15 +119,15 @@ impl Clerk {
     ) -> Result<Self> {
         let (sender, reports) = mpsc::channel();
         let desk = |name: &str| {
-            let bench = Bench { store: store.clone(), limit, reports: sender.clone() };
-            Desk::new(name, bench, on_report.clone())
+            let bench = WorkerContext { store: store.clone(), limit, reports: sender.clone() };
+            DiskThread::new(name, bench, on_report.clone())
         };
         Ok(Self { writer: desk("snapshots")?, reader: desk("snapshot")?, reports })
     }
 
     /// Asks the disk for something.
-    pub fn ask(&self, job: Job) {
-        let reads = matches!(job, Job::Read(_) | Job::ReadWithVariance(_));
+    pub fn ask(&self, job: DiskJob) {
+        let reads = matches!(job, DiskJob::Read(_) | DiskJob::ReadWithVariance(_));
         let desk = if reads { &self.reader } else { &self.writer };
         if let Some(jobs) = &desk.jobs {
             // The thread lives as long as its desk.
@@ -136,7 +136,7 @@ impl Clerk {
     }
 
     /// The next report, if there is one.
-    pub fn poll(&self) -> Option<Report> {
+    pub fn poll(&self) -> Option<DiskReport> {
         self.reports.try_recv().ok()
     }
 
@@ -147,14 +147,18 @@ impl Clerk {
     }
 }
 
-impl Drop for Clerk {
+impl Drop for DiskWorkers {
     fn drop(&mut self) {
         self.finish();
     }
 }
 
-impl Desk {
-    fn new(name: &str, bench: Bench, on_report: impl Fn() + Send + 'static) -> Result<Self> {
+impl DiskThread {
+    fn new(
+        name: &str,
+        bench: WorkerContext,
+        on_report: impl Fn() + Send + 'static,
+    ) -> Result<Self> {
         let (jobs, todo) = mpsc::channel();
         let thread = std::thread::Builder::new()
             .name(name.to_owned())
@@ -177,8 +181,8 @@ impl Desk {
     }
 }
 
-impl Bench {
-    fn work(&self, job: Job) {
+impl WorkerContext {
+    fn work(&self, job: DiskJob) {
         let told = match &self.store {
             Some(store) => self.report(store, job),
             None => no_place(&job),
@@ -189,36 +193,36 @@ impl Bench {
         }
     }
 
-    fn report(&self, store: &Store, job: Job) -> Option<Report> {
+    fn report(&self, store: &Store, job: DiskJob) -> Option<DiskReport> {
         let done = match job {
-            Job::List => return Some(list(store)),
-            Job::Keep(keep) => {
+            DiskJob::List => return Some(list(store)),
+            DiskJob::Keep(keep) => {
                 let kept = self.keep(store, *keep);
-                return Some(kept.unwrap_or_else(|error| Report::NotKept(error.to_string())));
+                return Some(kept.unwrap_or_else(|error| DiskReport::NotKept(error.to_string())));
             }
-            Job::Read(entry) => {
+            DiskJob::Read(entry) => {
                 let picture = read(store, &entry).map_err(|error| error.to_string());
-                return Some(Report::Read(entry.id, picture));
+                return Some(DiskReport::Read(entry.id, picture));
             }
-            Job::ReadWithVariance(entry) => {
+            DiskJob::ReadWithVariance(entry) => {
                 let picture = read_with_variance(store, &entry).map_err(|error| error.to_string());
-                return Some(Report::Read(entry.id, picture));
+                return Some(DiskReport::Read(entry.id, picture));
             }
-            Job::Describe(id, record) => store.describe(&id, &record),
-            Job::Delete(id) => store.delete(&id),
-            Job::Restore(id) => {
+            DiskJob::Describe(id, record) => store.describe(&id, &record),
+            DiskJob::Delete(id) => store.delete(&id),
+            DiskJob::Restore(id) => {
                 let lost = store.restore(&id).err();
-                return lost.map(|error| Report::Lost(id, error.to_string()));
+                return lost.map(|error| DiskReport::Lost(id, error.to_string()));
             }
-            Job::Forget(ids) => {
+            DiskJob::Forget(ids) => {
                 store.forget(&ids);
                 Ok(())
             }
         };
-        done.err().map(|error| Report::Failed(error.to_string()))
+        done.err().map(|error| DiskReport::Failed(error.to_string()))
     }
 
-    fn keep(&self, store: &Store, keep: Keep) -> Result<Report> {
+    fn keep(&self, store: &Store, keep: Keep) -> Result<DiskReport> {
         let Keep { film, mut settings, seconds, cpu_seconds, tone, name } = keep;
         let film = receive(&PathBuf::from(&name), &film)?;
         settings.film.size = film.size().to_array();
@@ -235,23 +239,23 @@ impl Bench {
         };
         let entry = store.add(fresh)?;
         let gone = store.make_room(self.limit, &entry.id);
-        Ok(Report::Kept { kept: pictured(store, entry), picture: Arc::new(picture), gone })
+        Ok(DiskReport::Kept { kept: pictured(store, entry), picture: Arc::new(picture), gone })
     }
 }
 
-fn list(store: &Store) -> Report {
+fn list(store: &Store) -> DiskReport {
     store.clean(LEFT_BEHIND);
     let Listing { entries, problems } = store.list();
     let entries = entries.into_iter().map(|entry| pictured(store, entry)).collect();
-    Report::Listed(entries, problems)
+    DiskReport::Listed(entries, problems)
 }
 
-fn pictured(store: &Store, entry: Entry) -> Pictured {
+fn pictured(store: &Store, entry: StoredSnapshot) -> SnapshotWithThumbnail {
     let thumbnail = thumbnail::read(&store.thumbnail(&entry.id));
     (entry, thumbnail)
 }
 
-fn read(store: &Store, entry: &Entry) -> Result<Arc<Picture>> {
+fn read(store: &Store, entry: &StoredSnapshot) -> Result<Arc<Picture>> {
     let (size, pixels) = exr::read_picture(&store.picture(&entry.id))?;
     let Record { spp, seconds, noise, .. } = entry.record;
     let mut picture = Picture { pixels, ..blank(&size.to_array()) };
@@ -261,7 +265,7 @@ fn read(store: &Store, entry: &Entry) -> Result<Arc<Picture>> {
     Ok(Arc::new(picture))
 }
 
-fn read_with_variance(store: &Store, entry: &Entry) -> Result<Arc<Picture>> {
+fn read_with_variance(store: &Store, entry: &StoredSnapshot) -> Result<Arc<Picture>> {
     let exr::Snapshot { film, header } = exr::read_snapshot(&store.picture(&entry.id))?;
     let mut picture = blank(&film.size().to_array());
     picture.stats.noise = resolve(&film, &mut picture.pixels);
@@ -279,11 +283,11 @@ fn blank(size: &[u32; 2]) -> Picture {
 }
 
 /// Without a place nothing can be kept, and nothing else can be asked for.
-fn no_place(job: &Job) -> Option<Report> {
+fn no_place(job: &DiskJob) -> Option<DiskReport> {
     let text = "There is no folder to keep snapshots in. Set FLAMBEAU_DATA to one.";
     match job {
-        Job::Keep(_) => Some(Report::NotKept(text.to_owned())),
-        Job::List => Some(Report::Listed(Vec::new(), Vec::new())),
+        DiskJob::Keep(_) => Some(DiskReport::NotKept(text.to_owned())),
+        DiskJob::List => Some(DiskReport::Listed(Vec::new(), Vec::new())),
         _ => None,
     }
 }

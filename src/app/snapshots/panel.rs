@@ -11,7 +11,9 @@ use egui::{
 
 use crate::app::command::Command;
 use crate::app::shell::status::{percent, samples};
-use crate::app::snapshots::{Item, LARGEST_THUMBNAIL, SmallPicture, Snapshots, now, size_in_words};
+use crate::app::snapshots::{
+    LARGEST_THUMBNAIL, SmallPicture, Snapshots, StripItem, now, size_in_words,
+};
 use crate::app::ui::theme::{color, size, space};
 use crate::render::Picture;
 
@@ -100,7 +102,7 @@ fn head(ui: &mut Ui, snapshots: &mut Snapshots, commands: &mut Vec<Command>) {
 
 /// Name and note of the snapshot shown, and what can be done with it; `buttons` is the room that the
 /// buttons take.
-fn details(ui: &mut Ui, item: &mut Item, buttons: f32, commands: &mut Vec<Command>) {
+fn details(ui: &mut Ui, item: &mut StripItem, buttons: f32, commands: &mut Vec<Command>) {
     let name = TextEdit::singleline(&mut item.record.name).desired_width(NAME_WIDTH);
     ui.add(name).accessible_name("Snapshot name").on_hover_text("What this snapshot is called.");
     let width = (ui.available_width() - buttons).clamp(60.0, 400.0);
@@ -141,7 +143,7 @@ fn context_menu(ui: &mut Ui, commands: &mut Vec<Command>) {
 }
 
 /// A snapshot with its small picture.
-fn card(ui: &mut Ui, item: &mut Item, shown: bool) -> Response {
+fn card(ui: &mut Ui, item: &mut StripItem, shown: bool) -> Response {
     let figures = figures(item.record.spp, item.record.noise);
     let response = frame(ui, &item.record.name, [&item.record.name, &figures], shown);
     if let Some(texture) = texture(ui, item) {
@@ -220,7 +222,7 @@ fn line(ui: &Ui, card: Rect, down: f32, text: &str, tint: Color32) {
 }
 
 /// The small picture on the graphics card.
-fn texture<'a>(ui: &Ui, item: &'a mut Item) -> Option<&'a egui::TextureHandle> {
+fn texture<'a>(ui: &Ui, item: &'a mut StripItem) -> Option<&'a egui::TextureHandle> {
     let name = || format!("snapshot {}", item.entry.id);
     item.thumbnail = match item.thumbnail.take() {
         Some(SmallPicture::Waiting(image)) => {

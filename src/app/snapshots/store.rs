@@ -20,7 +20,7 @@ use super::record::Record;
 use super::thumbnail::Thumbnail;
 use crate::error::{Error, Result};
 use crate::files::replace;
-use crate::image::exr::{self, Header};
+use crate::image::exr::{self, SnapshotHeader};
 use crate::image::png;
 use crate::image::tone::Tone;
 use crate::render::Film;
@@ -40,7 +40,7 @@ pub struct Store {
 
 /// One snapshot in the folder.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Entry {
+pub struct StoredSnapshot {
     /// The name of its own folder.
     pub id: String,
     /// What is written down beside it.
@@ -53,7 +53,7 @@ pub struct Entry {
 #[derive(Debug, Default, PartialEq)]
 pub struct Listing {
     /// The snapshots, the oldest first.
-    pub entries: Vec<Entry>,
+    pub entries: Vec<StoredSnapshot>,
     /// What else is there, one sentence each.
     pub problems: Vec<String>,
 }
@@ -63,7 +63,7 @@ pub struct Fresh<'a> {
     /// Its samples.
     pub film: &'a Film,
     /// What the picture's file says about itself.
-    pub header: &'a Header,
+    pub header: &'a SnapshotHeader,
     /// What is written down beside it.
     pub record: Record,
     /// The picture, small.
@@ -113,19 +113,19 @@ impl Store {
         listing
     }
 
-    fn entry(&self, id: String) -> Result<Entry> {
+    fn entry(&self, id: String) -> Result<StoredSnapshot> {
         let folder = self.kept.join(&id);
         let record = read_record(&folder.join(RECORD))?;
         let bytes = size(&self.picture(&id))?;
         let bytes = bytes + size(&self.thumbnail(&id)).unwrap_or(0);
-        Ok(Entry { id, record, bytes })
+        Ok(StoredSnapshot { id, record, bytes })
     }
 
     /// Writes a new snapshot.
     ///
     /// # Errors
     /// When the system refuses; names the file. Nothing is left of it then.
-    pub fn add(&self, fresh: Fresh<'_>) -> Result<Entry> {
+    pub fn add(&self, fresh: Fresh<'_>) -> Result<StoredSnapshot> {
         for folder in [&self.kept, &self.deleted] {
             fs::create_dir_all(folder).map_err(|e| Error::io(folder, e))?;
         }
@@ -198,7 +198,7 @@ impl Store {
 
     /// Removes snapshots for good until the rest takes `limit` bytes at most; never `newest`.
     /// Returns what was removed.
-    pub fn make_room(&self, limit: u64, newest: &str) -> Vec<Entry> {
+    pub fn make_room(&self, limit: u64, newest: &str) -> Vec<StoredSnapshot> {
         let entries = self.list().entries;
         let mut gone = victims(&entries, limit, newest);
         gone.retain(|entry| fs::remove_dir_all(self.kept.join(&entry.id)).is_ok());
@@ -208,9 +208,9 @@ impl Store {
 
 /// Which of `entries`, the oldest first, have to go so that the rest takes `limit` bytes at most:
 /// the oldest without a note, and only where that is not enough those with one; never `newest`.
-fn victims(entries: &[Entry], limit: u64, newest: &str) -> Vec<Entry> {
+fn victims(entries: &[StoredSnapshot], limit: u64, newest: &str) -> Vec<StoredSnapshot> {
     let mut total: u64 = entries.iter().map(|entry| entry.bytes).sum();
-    let (noted, plain): (Vec<&Entry>, Vec<&Entry>) = entries
+    let (noted, plain): (Vec<&StoredSnapshot>, Vec<&StoredSnapshot>) = entries
         .iter()
         .filter(|entry| entry.id != newest)
         .partition(|entry| !entry.record.note.is_empty());

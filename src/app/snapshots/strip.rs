@@ -5,18 +5,18 @@ use std::sync::Arc;
 
 use egui::{ColorImage, TextureHandle};
 
-use super::disk::{Job, Pictured};
+use super::disk::{DiskJob, SnapshotWithThumbnail};
 use super::record::{LONGEST_NAME, LONGEST_NOTE, Record};
-use super::store::Entry;
+use super::store::StoredSnapshot;
 use crate::render::Picture;
 
 /// Bytes of pictures that are held ready to be flipped to.
 const READY_BYTES: usize = 512 << 20;
 
 /// A snapshot in the strip.
-pub struct Item {
+pub struct StripItem {
     /// As it is on the disk.
-    pub entry: Entry,
+    pub entry: StoredSnapshot,
     /// Name and note as they are being edited, and the figures.
     pub record: Record,
     /// The small picture.
@@ -36,11 +36,11 @@ pub enum SmallPicture {
 /// The snapshots, the oldest first.
 #[derive(Default)]
 pub struct Strip {
-    items: Vec<Item>,
+    items: Vec<StripItem>,
     /// The place of the one shown; none: the live picture.
     shown: Option<usize>,
     /// What was deleted, the latest last, each with the place it had.
-    deleted: Vec<(usize, Item)>,
+    deleted: Vec<(usize, StripItem)>,
     /// Whether what is shown has changed since the strip was last drawn.
     moved: bool,
     /// Whether the picture shown should bring its variance along.
@@ -49,8 +49,8 @@ pub struct Strip {
     open: Option<bool>,
 }
 
-impl Item {
-    fn new((entry, thumbnail): Pictured) -> Self {
+impl StripItem {
+    fn new((entry, thumbnail): SnapshotWithThumbnail) -> Self {
         let record = entry.record.clone();
         let thumbnail = thumbnail.map(SmallPicture::Waiting);
         Self { entry, record, thumbnail, picture: None, unreadable: false }
@@ -64,20 +64,20 @@ impl Item {
 
 impl Strip {
     /// Takes in what was kept in earlier runs.
-    pub fn fill(&mut self, earlier: Vec<Pictured>) {
+    pub fn fill(&mut self, earlier: Vec<SnapshotWithThumbnail>) {
         let count = earlier.len();
-        self.items.splice(0..0, earlier.into_iter().map(Item::new));
+        self.items.splice(0..0, earlier.into_iter().map(StripItem::new));
         self.shown = self.shown.map(|index| index + count);
     }
 
     /// Takes in a new snapshot; what is shown stays.
-    pub fn push(&mut self, kept: Pictured, picture: Arc<Picture>) {
-        self.items.push(Item { picture: Some(picture), ..Item::new(kept) });
+    pub fn push(&mut self, kept: SnapshotWithThumbnail, picture: Arc<Picture>) {
+        self.items.push(StripItem { picture: Some(picture), ..StripItem::new(kept) });
         self.let_go();
     }
 
     /// Forgets snapshots that are gone from the disk.
-    pub fn remove(&mut self, gone: &[Entry]) {
+    pub fn remove(&mut self, gone: &[StoredSnapshot]) {
         gone.iter().for_each(|entry| self.lose(&entry.id));
     }
 
@@ -89,17 +89,17 @@ impl Strip {
     }
 
     /// All of them, the oldest first.
-    pub fn items_mut(&mut self) -> &mut [Item] {
+    pub fn items_mut(&mut self) -> &mut [StripItem] {
         &mut self.items
     }
 
     /// All of them, the oldest first.
-    pub fn items(&self) -> &[Item] {
+    pub fn items(&self) -> &[StripItem] {
         &self.items
     }
 
     /// The one in this folder.
-    pub fn find(&self, id: &str) -> Option<&Item> {
+    pub fn find(&self, id: &str) -> Option<&StripItem> {
         self.items.iter().find(|item| item.entry.id == id)
     }
 
@@ -113,12 +113,12 @@ impl Strip {
     }
 
     /// The snapshot shown.
-    pub fn shown_item(&self) -> Option<&Item> {
+    pub fn shown_item(&self) -> Option<&StripItem> {
         self.shown.and_then(|index| self.items.get(index))
     }
 
     /// The same, to edit its name and note.
-    pub fn shown_item_mut(&mut self) -> Option<&mut Item> {
+    pub fn shown_item_mut(&mut self) -> Option<&mut StripItem> {
         self.shown.and_then(|index| self.items.get_mut(index))
     }
 
@@ -155,19 +155,19 @@ impl Strip {
     }
 
     /// What the disk should be asked to read: the picture shown, or one that a key away.
-    pub fn wanted(&self) -> Option<Job> {
+    pub fn wanted(&self) -> Option<DiskJob> {
         let shown = self.shown?;
         let near = [Some(shown), shown.checked_sub(1), Some(shown + 1)];
         let items = near.into_iter().flatten().filter_map(|index| self.items.get(index));
-        let missing = |item: &&Item| item.picture.is_none() && !item.unreadable;
+        let missing = |item: &&StripItem| item.picture.is_none() && !item.unreadable;
         if self.wants_variance
             && let Some(item) = self.shown_item()
             && !item.unreadable
             && item.picture.as_ref().is_none_or(|picture| picture.variance.is_empty())
         {
-            return Some(Job::ReadWithVariance(item.entry.clone()));
+            return Some(DiskJob::ReadWithVariance(item.entry.clone()));
         }
-        items.into_iter().find(missing).map(|item| Job::Read(item.entry.clone()))
+        items.into_iter().find(missing).map(|item| DiskJob::Read(item.entry.clone()))
     }
 
     /// Takes in a picture, or that there is none. Whether it was to be shown now.
@@ -181,7 +181,7 @@ impl Strip {
 
     /// Lets go of the pictures farthest from the one shown while they take too much memory.
     fn let_go(&mut self) {
-        let size = |item: &Item| {
+        let size = |item: &StripItem| {
             item.picture.as_ref().map_or(0, |picture| {
                 size_of_val(picture.pixels.as_slice()) + size_of_val(picture.variance.as_slice())
             })
@@ -200,19 +200,19 @@ impl Strip {
     }
 
     /// Deletes the snapshot shown and shows the next.
-    pub fn delete(&mut self) -> Option<Job> {
+    pub fn delete(&mut self) -> Option<DiskJob> {
         let index = self.shown.filter(|&index| index < self.items.len())?;
         let item = self.items.remove(index);
-        let job = Job::Delete(item.entry.id.clone());
+        let job = DiskJob::Delete(item.entry.id.clone());
         self.deleted.push((index, item));
         self.show(Some(index));
         Some(job)
     }
 
     /// Brings the snapshot deleted last back and shows it.
-    pub fn undo_delete(&mut self) -> Option<Job> {
+    pub fn undo_delete(&mut self) -> Option<DiskJob> {
         let (index, item) = self.deleted.pop()?;
-        let job = Job::Restore(item.entry.id.clone());
+        let job = DiskJob::Restore(item.entry.id.clone());
         let index = index.min(self.items.len());
         self.items.insert(index, item);
         self.show(Some(index));
@@ -225,13 +225,13 @@ impl Strip {
     }
 
     /// Forgets what was deleted, and has it removed for good.
-    pub fn forget_deleted(&mut self) -> Option<Job> {
+    pub fn forget_deleted(&mut self) -> Option<DiskJob> {
         let ids: Vec<String> = self.deleted.drain(..).map(|(_, item)| item.entry.id).collect();
-        (!ids.is_empty()).then_some(Job::Forget(ids))
+        (!ids.is_empty()).then_some(DiskJob::Forget(ids))
     }
 
     /// The names and notes edited since, to be written down. An empty name becomes what it was.
-    pub fn edited(&mut self) -> Vec<Job> {
+    pub fn edited(&mut self) -> Vec<DiskJob> {
         let mut jobs = Vec::new();
         for item in &mut self.items {
             if item.record == item.entry.record {
@@ -244,7 +244,7 @@ impl Strip {
             };
             if item.record != item.entry.record {
                 item.entry.record = item.record.clone();
-                jobs.push(Job::Describe(item.entry.id.clone(), item.record.clone()));
+                jobs.push(DiskJob::Describe(item.entry.id.clone(), item.record.clone()));
             }
         }
         jobs

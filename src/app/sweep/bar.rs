@@ -6,7 +6,7 @@ use crate::app::ui::theme::{color, space};
 use crate::app::ui::widgets::significant;
 use crate::format::rounded;
 use crate::render::compare::SpeedUp;
-use crate::render::sweep::{Entry, Ranking};
+use crate::render::sweep::{RankedTrial, Ranking};
 
 /// Width of the bars and height of one.
 const SIZE: egui::Vec2 = vec2(190.0, 12.0);
@@ -17,12 +17,12 @@ const LEAST_SPAN: f64 = 0.5;
 
 /// The axis of all bars of a ranking, in powers of ten.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Axis {
+pub struct BarAxis {
     low: f64,
     high: f64,
 }
 
-impl Axis {
+impl BarAxis {
     /// Covers all of a ranking with its errors, and 1, where bars begin.
     pub fn over(ranking: &Ranking) -> Self {
         let known = ranking.entries.iter().filter_map(|entry| entry.over_baseline);
@@ -65,7 +65,7 @@ impl Axis {
     }
 
     /// The bar of an entry.
-    pub fn bar(&self, ui: &mut Ui, entry: &Entry, is_best: bool) -> Response {
+    pub fn bar(&self, ui: &mut Ui, entry: &RankedTrial, is_best: bool) -> Response {
         let (rect, response) = ui.allocate_exact_size(SIZE, Sense::hover());
         let painter = ui.painter();
         for power in self.powers() {
@@ -106,22 +106,22 @@ mod tests {
 
     #[test]
     fn the_axis_covers_everything_and_one() {
-        let entry = |ratio| Entry {
+        let entry = |ratio| RankedTrial {
             trial: crate::render::sweep::plan(&Default::default(), &|_, _| None)[0],
             side: None,
             over_baseline: Some(SpeedUp { ratio, log_error: 0.05 }),
             over_best: None,
         };
         let entries = vec![entry(40.0), entry(3.0)];
-        let axis = Axis::over(&Ranking { entries, leave_on: None, worths: Vec::new() });
+        let axis = BarAxis::over(&Ranking { entries, leave_on: None, worths: Vec::new() });
         let rect = Rect::from_min_size(pos2(10.0, 0.0), vec2(100.0, 10.0));
         for value in [1.0, 3.0, 44.0] {
             assert!(rect.x_range().contains(axis.x(rect, value)), "{value}");
         }
         assert!(axis.powers().eq([1.0, 10.0]) && axis.labeled_powers().eq([1.0, 10.0]));
-        let wide = Axis { low: -1.1, high: 4.4 };
+        let wide = BarAxis { low: -1.1, high: 4.4 };
         assert!(wide.labeled_powers().eq([1.0, 100.0, 10_000.0]));
         let empty = Ranking { entries: Vec::new(), leave_on: None, worths: Vec::new() };
-        assert!(Axis::over(&empty).high > 0.3);
+        assert!(BarAxis::over(&empty).high > 0.3);
     }
 }

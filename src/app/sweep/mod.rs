@@ -9,11 +9,11 @@ use std::time::{Duration, Instant};
 
 use glam::UVec2;
 
-use super::jobs::live_render::{Engine, same_shot};
+use super::jobs::live_render::{LiveRender, same_shot};
 use crate::error::{Error, Result};
 use crate::render::pool::{Pool, Priority};
 use crate::render::sweep::{
-    DEFAULT_SECONDS, Progress, Ranking, SweepJob, Trial, plan, quick_size, sweep,
+    DEFAULT_SECONDS, Ranking, SweepJob, SweepProgress, Trial, plan, quick_size, sweep,
 };
 use crate::render::time_slice::Amount;
 use crate::scene::Settings;
@@ -52,15 +52,15 @@ pub struct Results {
 struct Running {
     settings: Settings,
     stop: Arc<AtomicBool>,
-    reports: mpsc::Receiver<Report>,
-    progress: Progress,
+    reports: mpsc::Receiver<SweepReport>,
+    progress: SweepProgress,
     /// When and at which part of it all strategies were at work, so that the pace is known.
     since: Option<(Instant, f64)>,
 }
 
 /// What the thread has to say.
-enum Report {
-    Progress(Progress),
+enum SweepReport {
+    Progress(SweepProgress),
     /// The ranking and whether it was cancelled before its end, or what failed.
     Ended(Result<(Ranking, bool)>),
 }
@@ -109,12 +109,12 @@ impl Sweep {
     }
 
     /// How far it is, while it runs, and the time left once that is known.
-    pub fn progress(&self) -> Option<(Progress, Option<Duration>)> {
+    pub fn progress(&self) -> Option<(SweepProgress, Option<Duration>)> {
         let Some(running) = &self.running else {
-            return self.wanted.then_some((Progress::Preparing(0, 1), None));
+            return self.wanted.then_some((SweepProgress::Preparing(0, 1), None));
         };
         let left = match running.progress {
-            Progress::Rendering(part) => {
+            SweepProgress::Rendering(part) => {
                 let since = running.since.filter(|(_, then)| part > then + PACED);
                 since.map(|(since, then)| since.elapsed().mul_f64((1.0 - part) / (part - then)))
             }
@@ -137,7 +137,7 @@ impl Sweep {
     pub fn update(
         &mut self,
         settings: &Settings,
-        engine: &Engine,
+        engine: &LiveRender,
         size: UVec2,
         wake: impl Fn() + Send + 'static,
     ) -> Result<()> {
@@ -172,7 +172,7 @@ impl Sweep {
         let trials = plan(&settings.strategy, &|toggle, strategy| {
             no_effect_with(toggle, settings, strategy)
         });
-        let work = Work {
+        let work = SweepWork {
             scene,
             trials,
             size: quick_size(size),
@@ -187,14 +187,14 @@ impl Sweep {
                 let _ = sender.send(report);
                 wake();
             };
-            let ended = work.run(&mut |progress| report(Report::Progress(progress)));
-            report(Report::Ended(ended));
+            let ended = work.run(&mut |progress| report(SweepReport::Progress(progress)));
+            report(SweepReport::Ended(ended));
         };
         std::thread::Builder::new()
             .name("sweep".to_owned())
             .spawn(run)
             .map_err(|error| Error::io("the thread that tries strategies", error))?;
-        let (settings, progress) = (settings.clone(), Progress::Preparing(0, 1));
+        let (settings, progress) = (settings.clone(), SweepProgress::Preparing(0, 1));
         Ok(Running { settings, stop, reports, progress, since: None })
     }
 }
@@ -215,8 +215,8 @@ impl Running {
     fn poll(&mut self) -> Option<Result<(Ranking, bool)>> {
         loop {
             match self.reports.try_recv() {
-                Ok(Report::Progress(progress)) => {
-                    if let Progress::Rendering(part) = progress
+                Ok(SweepReport::Progress(progress)) => {
+                    if let SweepProgress::Rendering(part) = progress
                         && part > SET_UP
                         && self.since.is_none()
                     {
@@ -224,7 +224,7 @@ impl Running {
                     }
                     self.progress = progress;
                 }
-                Ok(Report::Ended(ended)) => return Some(ended),
+                Ok(SweepReport::Ended(ended)) => return Some(ended),
                 Err(mpsc::TryRecvError::Empty) => return None,
                 Err(mpsc::TryRecvError::Disconnected) => {
                     let reason = "trying the strategies broke off; try again";
@@ -236,7 +236,7 @@ impl Running {
 }
 
 /// What the thread does.
-struct Work {
+struct SweepWork {
     scene: Arc<Scene>,
     trials: Vec<Trial>,
     size: UVec2,
@@ -246,8 +246,8 @@ struct Work {
     stop: Arc<AtomicBool>,
 }
 
-impl Work {
-    fn run(&self, progress: &mut dyn FnMut(Progress)) -> Result<(Ranking, bool)> {
+impl SweepWork {
+    fn run(&self, progress: &mut dyn FnMut(SweepProgress)) -> Result<(Ranking, bool)> {
         let pool = Pool::new(self.threads, Priority::Background)?;
         let job = SweepJob {
             scene: &self.scene,

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use egui::{Button, Context, DragValue, Grid, Label, Rect, RichText, ScrollArea, Ui, Window, vec2};
 
-use super::bar::Axis;
+use super::bar::BarAxis;
 use crate::app::command::Command;
 use crate::app::document::Editor;
 use crate::app::panels::explain;
@@ -14,7 +14,7 @@ use crate::app::ui::theme::{color, space};
 use crate::app::ui::widgets::{finite, key_of, row_label, significant};
 use crate::format::percent;
 use crate::render::sweep::words::{headline, note, relative_time, remarks};
-use crate::render::sweep::{Entry, Gain, Progress, Ranking, Source, Worth};
+use crate::render::sweep::{Gain, RankedTrial, Ranking, SweepProgress, TrialSource, Worth};
 
 /// Width of the window's contents.
 const WIDTH: f32 = 640.0;
@@ -24,12 +24,12 @@ const AROUND: f32 = 110.0;
 const TIME: f32 = 92.0;
 
 /// What the progress row says, and the fraction done.
-pub fn progress((progress, left): &(Progress, Option<Duration>)) -> (String, f32) {
+pub fn progress((progress, left): &(SweepProgress, Option<Duration>)) -> (String, f32) {
     match progress {
-        Progress::Preparing(done, all) => {
+        SweepProgress::Preparing(done, all) => {
             ("Trying strategies: preparing".to_owned(), *done as f32 / (*all).max(1) as f32)
         }
-        Progress::Rendering(part) => {
+        SweepProgress::Rendering(part) => {
             let left = left.map_or_else(String::new, |left| {
                 format!(": {} left", time_left(left.as_secs_f64()))
             });
@@ -94,7 +94,7 @@ fn contents(ui: &mut Ui, results: &Results, editor: &mut Editor) {
 
 /// The strategies, the fastest first.
 fn entries(ui: &mut Ui, ranking: &Ranking, editor: &mut Editor) {
-    let axis = Axis::over(ranking);
+    let axis = BarAxis::over(ranking);
     Grid::new("strategies").num_columns(5).spacing([space::ROW * 2.0, 3.0]).show(ui, |ui| {
         heading(ui, "", "");
         heading(ui, "strategy", "");
@@ -120,11 +120,11 @@ fn entries(ui: &mut Ui, ranking: &Ranking, editor: &mut Editor) {
 }
 
 /// Takes the strategy over into the edited side.
-fn use_button(ui: &mut Ui, entry: &Entry, editor: &mut Editor) {
+fn use_button(ui: &mut Ui, entry: &RankedTrial, editor: &mut Editor) {
     let (trial, name) = (&entry.trial, entry.trial.kind.name());
     let strategy = &mut editor.document.settings.strategy;
     let in_use = *strategy == trial.strategy;
-    let refused = matches!(trial.source, Source::Refused(_));
+    let refused = matches!(trial.source, TrialSource::Refused(_));
     let text = if in_use { "In use" } else { "Use" };
     let button = Button::new(text).min_size(vec2(52.0, 0.0));
     let response = ui
@@ -142,10 +142,10 @@ fn use_button(ui: &mut Ui, entry: &Entry, editor: &mut Editor) {
 }
 
 /// Time and noise, or why there are none of its own.
-fn figures(ui: &mut Ui, entry: &Entry) {
+fn figures(ui: &mut Ui, entry: &RankedTrial) {
     if let Some(note) = note(entry) {
         let short = match entry.trial.source {
-            Source::SameAs { twin, .. } => format!("as {}", twin.name()),
+            TrialSource::SameAs { twin, .. } => format!("as {}", twin.name()),
             _ => "not rendered".to_owned(),
         };
         ui.label(RichText::new(short).color(color::TEXT_DIM)).on_hover_text(note);

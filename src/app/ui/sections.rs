@@ -10,13 +10,13 @@ use crate::app::ui::theme::{color, space};
 
 /// What was opened and folded, shared between the window and the parts that it shows.
 #[derive(Clone, Debug, Default)]
-pub struct Sections(Arc<Mutex<Chosen>>);
+pub struct Sections(Arc<Mutex<SectionState>>);
 
 /// Where the parts that are shown begin, in points below the top of the column, the first one first.
 pub type Tops = Vec<(&'static str, f32)>;
 
 #[derive(Debug, Default)]
-struct Chosen {
+struct SectionState {
     /// Where the column begins on the screen.
     top: f32,
     tops: Tops,
@@ -31,7 +31,7 @@ struct Chosen {
 impl Sections {
     /// As they were left, for the parts shown in `ctx` to find.
     pub fn install(ctx: &Context, open: BTreeMap<String, bool>) -> Self {
-        let sections = Self(Arc::new(Mutex::new(Chosen { open, ..Chosen::default() })));
+        let sections = Self(Arc::new(Mutex::new(SectionState { open, ..SectionState::default() })));
         ctx.data_mut(|data| data.insert_temp(Id::NULL, sections.clone()));
         sections
     }
@@ -92,7 +92,7 @@ impl Sections {
         self.with(|chosen| chosen.tops.push((name, top - chosen.top)));
     }
 
-    fn with<T>(&self, then: impl FnOnce(&mut Chosen) -> T) -> T {
+    fn with<T>(&self, then: impl FnOnce(&mut SectionState) -> T) -> T {
         then(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use crate::error::Result;
 use crate::format::percent;
-use crate::image::exr::{self, Header};
+use crate::image::exr::{self, SnapshotHeader};
 use crate::image::map::{self, Colors, Map};
-use crate::image::plot::{self, Axis, Curve, Plot};
+use crate::image::plot::{self, Plot, PlotAxis, PlotCurve};
 use crate::image::ramp::Scale;
 use crate::render::Film;
 use crate::render::compare::maps;
@@ -17,7 +17,7 @@ use crate::render::side_by_side::RenderedPair;
 pub fn write_all(
     folder: &Path,
     pair: &RenderedPair,
-    headers: &[Header; 2],
+    headers: &[SnapshotHeader; 2],
     (names, sentence): (&[String; 2], &str),
 ) -> Result<()> {
     let films = [&pair.sides[0].film, &pair.sides[1].film];
@@ -73,12 +73,12 @@ fn noise_over_time(
     sentence: &str,
 ) -> Result<()> {
     let curve =
-        |side: usize| Curve { name: &names[side], points: pair.sides[side].history.points() };
+        |side: usize| PlotCurve { name: &names[side], points: pair.sides[side].history.points() };
     let plot = Plot {
         title: sentence,
         axes: [
-            Axis { name: "CPU seconds of rendering", label: |seconds| seconds.to_string() },
-            Axis { name: "Noise: standard error relative to the mean", label: percent },
+            PlotAxis { name: "CPU seconds of rendering", label: |seconds| seconds.to_string() },
+            PlotAxis { name: "Noise: standard error relative to the mean", label: percent },
         ],
         curves: &[curve(0), curve(1)],
     };

@@ -9,13 +9,13 @@ use crate::transport::strategy::Preset;
 
 /// A preset, keys of the strategy, or several of them in their order.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Choice {
+pub struct StrategyChoice {
     text: String,
     /// As `--set` takes them.
     set: Vec<String>,
 }
 
-impl FromStr for Choice {
+impl FromStr for StrategyChoice {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -25,7 +25,7 @@ impl FromStr for Choice {
     }
 }
 
-impl Choice {
+impl StrategyChoice {
     /// As it was written.
     pub fn text(&self) -> &str {
         &self.text
@@ -101,7 +101,7 @@ mod tests {
     use crate::transport::strategy::{BoostMode, Integrator, Strategy};
 
     fn strategy(text: &str) -> Strategy {
-        let choice: Choice = text.parse().unwrap();
+        let choice: StrategyChoice = text.parse().unwrap();
         choice.over(&Settings::default(), "--a").unwrap().strategy
     }
 
@@ -118,12 +118,12 @@ mod tests {
 
     #[test]
     fn mistakes_name_the_key_and_the_mend() {
-        let unread = |text: &str| text.parse::<Choice>().unwrap_err();
+        let unread = |text: &str| text.parse::<StrategyChoice>().unwrap_err();
         assert!(unread("ful").contains("\"full\"") && unread("").contains("nee=false"));
         let camera = unread("camera.fov_x=30");
         assert!(camera.contains("--set camera.fov_x=30"), "{camera}");
         let refused = |text: &str| {
-            let choice: Choice = text.parse().unwrap();
+            let choice: StrategyChoice = text.parse().unwrap();
             choice.over(&Settings::default(), "--b").unwrap_err().to_string()
         };
         let unknown = refused("nea=false");
@@ -140,7 +140,7 @@ mod tests {
 
     #[test]
     fn in_words_it_can_be_set() {
-        let choice: Choice = "baseline,nee=true".parse().unwrap();
+        let choice: StrategyChoice = "baseline,nee=true".parse().unwrap();
         assert_eq!(choice.in_words(), " --set strategy.preset=baseline --set strategy.nee=true");
     }
 }

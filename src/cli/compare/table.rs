@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::files;
 use crate::format::{percent, rounded};
 use crate::render::compare::{
-    ALARM, Agreement, Difference, FEWEST_SAMPLES, Side, SpeedUp, Verdict,
+    ALARM, Agreement, Difference, FEWEST_SAMPLES, SideFigures, SpeedUp, Verdict,
 };
 use crate::render::estimate::gray;
 use crate::render::side_by_side::RenderedSide;
@@ -20,7 +20,7 @@ use crate::transport::strategy::Strategy;
 
 /// The figures of a comparison, named as in `table.json`.
 #[derive(Debug, Serialize)]
-pub struct Table {
+pub struct CompareTable {
     pub scene: String,
     pub width: u32,
     pub height: u32,
@@ -68,7 +68,7 @@ impl SideRow {
     pub fn new(
         (name, choice): (&'static str, &str),
         strategy: Strategy,
-        side: &Side,
+        side: &SideFigures,
         rendered: &RenderedSide,
         (spent, errors): (Spent, Option<Errors>),
     ) -> Self {
@@ -229,7 +229,7 @@ impl AgreementRow {
     }
 }
 
-impl Table {
+impl CompareTable {
     /// The table as people read it.
     pub fn text(&self) -> String {
         let [a, b] = [self.a.cells(), self.b.cells()];

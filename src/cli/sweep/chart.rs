@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::error::Result;
 use crate::image::bars::{self, Bar, Bars};
 use crate::render::sweep::words::{headline, relative_time};
-use crate::render::sweep::{Entry, Ranking, Source};
+use crate::render::sweep::{RankedTrial, Ranking, TrialSource};
 
 /// Draws how many times as fast as the baseline each strategy is, the fastest first.
 ///
@@ -14,7 +14,7 @@ use crate::render::sweep::{Entry, Ranking, Source};
 pub fn write(path: &Path, ranking: &Ranking) -> Result<()> {
     let texts: Vec<[String; 2]> =
         ranking.entries.iter().map(|entry| [entry.trial.kind.title(), label(entry)]).collect();
-    let bar = |(number, entry): (usize, &Entry)| Bar {
+    let bar = |(number, entry): (usize, &RankedTrial)| Bar {
         name: &texts[number][0],
         value: entry.over_baseline.map(|speed_up| (speed_up.ratio, speed_up.interval())),
         label: &texts[number][1],
@@ -26,11 +26,11 @@ pub fn write(path: &Path, ranking: &Ranking) -> Result<()> {
     bars::write(path, &Bars { title: &title, axis, bars: &bars })
 }
 
-fn label(entry: &Entry) -> String {
+fn label(entry: &RankedTrial) -> String {
     match (entry.trial.source, &entry.over_baseline) {
-        (Source::Refused(_), _) => "not rendered".to_owned(),
-        (Source::SameAs { twin, .. }, _) => format!("as {}", twin.name()),
-        (Source::Rendered, Some(speed_up)) => relative_time(speed_up),
-        (Source::Rendered, None) => "not known".to_owned(),
+        (TrialSource::Refused(_), _) => "not rendered".to_owned(),
+        (TrialSource::SameAs { twin, .. }, _) => format!("as {}", twin.name()),
+        (TrialSource::Rendered, Some(speed_up)) => relative_time(speed_up),
+        (TrialSource::Rendered, None) => "not known".to_owned(),
     }
 }

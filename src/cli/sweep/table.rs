@@ -8,16 +8,16 @@ use serde::Serialize;
 use crate::cli::compare::{SpeedUpRow, put};
 use crate::error::{Error, Result};
 use crate::format::{percent, rounded};
-use crate::render::compare::{Side, SpeedUp};
+use crate::render::compare::{SideFigures, SpeedUp};
 use crate::render::sweep::words::{headline, note, relative_time, remarks};
-use crate::render::sweep::{Entry, Gain, Ranking, Swept, Worth};
+use crate::render::sweep::{Gain, RankedTrial, Ranking, Swept, Worth};
 use crate::scene::settings::FilmSettings;
 use crate::transport::strategy::Strategy;
 use crate::transport::toggle::Toggle;
 
 /// The figures of a sweep, named as in `table.json`.
 #[derive(Debug, Serialize)]
-pub struct Table {
+pub struct SweepTable {
     scene: String,
     width: u32,
     height: u32,
@@ -30,14 +30,14 @@ pub struct Table {
     sentence: String,
     remarks: Vec<String>,
     /// The strategies, the fastest first.
-    ranking: Vec<Row>,
+    ranking: Vec<SweepTableRow>,
     /// What each toggle brings.
     toggles: Vec<ToggleRow>,
 }
 
 /// A strategy with its figures; those that `render --stats` has too carry the same names.
 #[derive(Debug, Serialize)]
-struct Row {
+struct SweepTableRow {
     name: String,
     strategy: Strategy,
     leave_on: bool,
@@ -78,7 +78,7 @@ const COLUMNS: [&str; 6] =
 /// The columns of the toggles.
 const GAINS: [&str; 3] = ["toggle", "alone, of baseline's time", "left out, of full's time"];
 
-impl Table {
+impl SweepTable {
     /// The table of what was swept of a scene with this name and film, by so many threads in so many
     /// CPU seconds.
     pub fn new(
@@ -99,7 +99,9 @@ impl Table {
             cpu_seconds_setup: (cpu_seconds - rendering).max(0.0),
             sentence: headline(ranking),
             remarks: remarks(ranking),
-            ranking: rows.map(|(n, entry)| Row::new(entry, ranking.leave_on == Some(n))).collect(),
+            ranking: rows
+                .map(|(n, entry)| SweepTableRow::new(entry, ranking.leave_on == Some(n)))
+                .collect(),
             toggles: ranking.worths.iter().map(ToggleRow::new).collect(),
         }
     }
@@ -140,8 +142,8 @@ impl Table {
     }
 }
 
-impl Row {
-    fn new(entry: &Entry, leave_on: bool) -> Self {
+impl SweepTableRow {
+    fn new(entry: &RankedTrial, leave_on: bool) -> Self {
         let side = entry.side.as_ref();
         let row = |speed_up: &Option<SpeedUp>| speed_up.as_ref().map(Into::into);
         Self {
@@ -157,7 +159,7 @@ impl Row {
             gray_variance_of_mean: side.and_then(|side| side.variance_of_mean),
             gray_variance_error: side.and_then(|side| side.variance_error),
             variance_times_time: side
-                .and_then(Side::variance_times_time)
+                .and_then(SideFigures::variance_times_time)
                 .map(|(product, _)| product),
             over_baseline: row(&entry.over_baseline),
             over_best: row(&entry.over_best),
@@ -167,7 +169,7 @@ impl Row {
 }
 
 /// What a line of the ranking says. A twin's figures are written where it was rendered.
-fn cells(entry: &Entry, leave_on: bool) -> [String; COLUMNS.len()] {
+fn cells(entry: &RankedTrial, leave_on: bool) -> [String; COLUMNS.len()] {
     let mark = if leave_on { "* " } else { "  " };
     let name = format!("{mark}{}", entry.trial.kind.name());
     let mut cells = [const { String::new() }; COLUMNS.len()];

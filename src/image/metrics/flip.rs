@@ -74,7 +74,7 @@ pub struct Flip<'a> {
     reference: &'a Reference,
     tone: Tone,
     eye: Eye,
-    seen: Seen,
+    seen: PerceivedImage,
 }
 
 impl<'a> Flip<'a> {
@@ -114,7 +114,7 @@ struct Eye {
 
 /// A picture as the eye sees it.
 #[derive(Clone, Debug)]
-struct Seen {
+struct PerceivedImage {
     /// Blurred colors, see [`hunt_lab`].
     colors: Vec<Rgb>,
     features: Features,
@@ -134,7 +134,7 @@ impl Eye {
     }
 
     /// Looks at 8-bit sRGB `codes`, whose number is that of `size`.
-    fn look(&self, codes: &[[u8; 3]], size: UVec2) -> Seen {
+    fn look(&self, codes: &[[u8; 3]], size: UVec2) -> PerceivedImage {
         let width = size.x as usize;
         let plane = |channel: usize| -> Vec<f32> {
             codes.par_iter().map(|&code| opponent_from_code(code)[channel]).collect()
@@ -154,12 +154,12 @@ impl Eye {
             })
             .collect();
         lightness.par_iter_mut().for_each(|y| *y = (*y + 16.0) / 116.0);
-        Seen { colors, features: self.detectors.detect(&lightness, width) }
+        PerceivedImage { colors, features: self.detectors.detect(&lightness, width) }
     }
 }
 
 /// The errors between two pictures of one size.
-fn difference(reference: &Seen, picture: &Seen) -> Vec<f32> {
+fn difference(reference: &PerceivedImage, picture: &PerceivedImage) -> Vec<f32> {
     let largest = hyab(hunt_lab(Rgb::Y), hunt_lab(Rgb::Z)).powf(COLOR_POWER);
     let features = reference.features.difference(&picture.features);
     (&reference.colors, &picture.colors, features)

@@ -6,7 +6,7 @@ use exr::prelude::*;
 use glam::UVec2;
 
 use super::Reference;
-use crate::image::exr::Header;
+use crate::image::exr::SnapshotHeader;
 use crate::render::Film;
 use crate::render::publish::resolve;
 use crate::render::synthetic::Uniform;
@@ -140,7 +140,7 @@ fn snapshot(path: &std::path::Path, size: UVec2) -> Film {
         let pixel = UVec2::new(x, y);
         (0..3).for_each(|sample| film.add(pixel, &Uniform::default().sample(pixel, sample)));
     }
-    crate::image::exr::write(path, &film, &Header::default()).unwrap();
+    crate::image::exr::write(path, &film, &SnapshotHeader::default()).unwrap();
     film
 }
 

@@ -2,7 +2,7 @@
 
 use glam::Vec3A;
 
-use super::{Cone, Emitter, Kind, LightTree, Node};
+use super::{Cone, Emitter, LightNode, LightTree, NodeKind};
 use crate::math::Aabb;
 
 /// Bins per axis that splits are tried between.
@@ -15,7 +15,7 @@ const FARTHEST: f32 = 1e18;
 const FAINTEST: f64 = 1e-30;
 
 /// An emitter that is given its place.
-struct Item {
+struct PlacedEmitter {
     index: u32,
     bounds: Aabb,
     center: Vec3A,
@@ -26,7 +26,7 @@ struct Item {
 
 /// What a set of emitters amounts to.
 #[derive(Clone, Copy)]
-struct Summary {
+struct EmitterSummary {
     count: usize,
     bounds: Aabb,
     intensity: f64,
@@ -36,7 +36,7 @@ struct Summary {
 
 pub(super) fn build(emitters: &[Emitter]) -> LightTree {
     let brightest = emitters.iter().map(intensity).fold(0.0, f32::max);
-    let mut items: Vec<Item> = emitters
+    let mut items: Vec<PlacedEmitter> = emitters
         .iter()
         .enumerate()
         .filter(|(_, emitter)| intensity(emitter) > 0.0)
@@ -51,7 +51,7 @@ pub(super) fn build(emitters: &[Emitter]) -> LightTree {
     };
     if !items.is_empty() {
         tree.nodes.reserve(2 * items.len());
-        tree.nodes.push(node(&items, Kind::Leaf(0)));
+        tree.nodes.push(node(&items, NodeKind::Leaf(0)));
         split(&mut tree, 0, &mut items, 0, 0);
     }
     tree
@@ -61,7 +61,7 @@ fn intensity(emitter: &Emitter) -> f32 {
     if emitter.intensity.is_nan() { 0.0 } else { emitter.intensity.min(f32::MAX) }
 }
 
-fn item(index: u32, emitter: &Emitter, brightest: f32) -> Option<Item> {
+fn item(index: u32, emitter: &Emitter, brightest: f32) -> Option<PlacedEmitter> {
     let Aabb { min, max } = emitter.bounds;
     if min.is_nan() || max.is_nan() || emitter.bounds.is_empty() {
         return None;
@@ -69,7 +69,7 @@ fn item(index: u32, emitter: &Emitter, brightest: f32) -> Option<Item> {
     let limit = Vec3A::splat(FARTHEST);
     let bounds = Aabb::new(min.clamp(-limit, limit), max.clamp(-limit, limit));
     let relative = f64::from(intensity(emitter)) / f64::from(brightest);
-    Some(Item {
+    Some(PlacedEmitter {
         index,
         bounds,
         center: bounds.center(),
@@ -79,9 +79,9 @@ fn item(index: u32, emitter: &Emitter, brightest: f32) -> Option<Item> {
 }
 
 /// Fills the node `at` with `items` and all below it. `trail` holds the `depth` turns to it.
-fn split(tree: &mut LightTree, at: usize, items: &mut [Item], depth: u32, trail: u64) {
+fn split(tree: &mut LightTree, at: usize, items: &mut [PlacedEmitter], depth: u32, trail: u64) {
     if let [only] = items {
-        tree.nodes[at].kind = Kind::Leaf(only.index);
+        tree.nodes[at].kind = NodeKind::Leaf(only.index);
         tree.trails[only.index as usize] = Some(trail);
         tree.leaves[only.index as usize] = at as u32;
         return;
@@ -92,16 +92,16 @@ fn split(tree: &mut LightTree, at: usize, items: &mut [Item], depth: u32, trail:
     };
     let (low, high) = items.split_at_mut(middle);
     let first = tree.nodes.len();
-    tree.nodes[at].kind = Kind::Inner(first as u32);
+    tree.nodes[at].kind = NodeKind::Inner(first as u32);
     // Kinds are set when the children are filled.
-    tree.nodes.extend([node(low, Kind::Leaf(0)), node(high, Kind::Leaf(0))]);
+    tree.nodes.extend([node(low, NodeKind::Leaf(0)), node(high, NodeKind::Leaf(0))]);
     split(tree, first, low, depth + 1, trail);
     split(tree, first + 1, high, depth + 1, trail | 1 << depth);
 }
 
-fn node(items: &[Item], kind: Kind) -> Node {
-    let all = items.iter().fold(Summary::EMPTY, |sum, item| sum.with(item));
-    Node {
+fn node(items: &[PlacedEmitter], kind: NodeKind) -> LightNode {
+    let all = items.iter().fold(EmitterSummary::EMPTY, |sum, item| sum.with(item));
+    LightNode {
         bounds: all.bounds,
         intensity: all.intensity as f32,
         least_squared: least_distance(&all).powi(2),
@@ -113,14 +113,14 @@ fn node(items: &[Item], kind: Kind) -> Node {
 /// A distance below which the nearest emitter of a node is not expected. Among emitters on a line
 /// that is a part of their spacing; among emitters on a plane or in space the farther ones matter
 /// more than the nearest, and a part of their extent across stands for 1/d² averaged over it.
-fn least_distance(all: &Summary) -> f32 {
+fn least_distance(all: &EmitterSummary) -> f32 {
     let mut size = all.bounds.size().to_array();
     size.sort_by(f32::total_cmp);
     (0.15 * size[1]).max(0.25 * size[2] / all.count as f32)
 }
 
 /// Two halves along the longest axis.
-fn halve(items: &mut [Item]) -> usize {
+fn halve(items: &mut [PlacedEmitter]) -> usize {
     let centers = items.iter().fold(Aabb::EMPTY, |b, i| b.union(&Aabb::new(i.center, i.center)));
     let axis = centers.size().max_position();
     let middle = items.len() / 2;
@@ -146,7 +146,7 @@ struct Bins {
 }
 
 impl Bins {
-    fn of(&self, item: &Item) -> usize {
+    fn of(&self, item: &PlacedEmitter) -> usize {
         let bin = (item.center[self.axis] - self.low) * self.per_length;
         (bin as usize).min(BINS - 1)
     }
@@ -154,7 +154,7 @@ impl Bins {
 
 impl Plane {
     /// Brings the low side to the front and returns its length.
-    fn partition(&self, items: &mut [Item]) -> usize {
+    fn partition(&self, items: &mut [PlacedEmitter]) -> usize {
         let mut middle = 0;
         for i in 0..items.len() {
             if self.bins.of(&items[i]) < self.bin {
@@ -169,7 +169,7 @@ impl Plane {
 /// The plane with the least sum of intensity × extent × directions over its sides, with splits of
 /// the longest axis preferred (the paper's surface area orientation heuristic; the diagonal's
 /// square stands for the area, which points on a line do not have). `None` if no plane parts them.
-fn cheapest_split(items: &[Item], bounds: &Aabb) -> Option<Plane> {
+fn cheapest_split(items: &[PlacedEmitter], bounds: &Aabb) -> Option<Plane> {
     let centers = items.iter().fold(Aabb::EMPTY, |b, i| b.union(&Aabb::new(i.center, i.center)));
     let mut best: Option<(f64, Plane)> = None;
     for axis in 0..3 {
@@ -190,19 +190,19 @@ fn cheapest_split(items: &[Item], bounds: &Aabb) -> Option<Plane> {
 }
 
 /// The cost of each plane of an axis that has emitters on both sides, with the bin above it.
-fn costs(items: &[Item], bins: Bins) -> impl Iterator<Item = (usize, f64)> {
-    let mut sums = [Summary::EMPTY; BINS];
+fn costs(items: &[PlacedEmitter], bins: Bins) -> impl Iterator<Item = (usize, f64)> {
+    let mut sums = [EmitterSummary::EMPTY; BINS];
     for item in items {
         let bin = bins.of(item);
         sums[bin] = sums[bin].with(item);
     }
-    let mut above = [Summary::EMPTY; BINS];
-    let mut sum = Summary::EMPTY;
+    let mut above = [EmitterSummary::EMPTY; BINS];
+    let mut sum = EmitterSummary::EMPTY;
     for bin in (0..BINS).rev() {
         sum = sum.union(&sums[bin]);
         above[bin] = sum;
     }
-    let mut below = Summary::EMPTY;
+    let mut below = EmitterSummary::EMPTY;
     (1..BINS).filter_map(move |bin| {
         below = below.union(&sums[bin - 1]);
         let parts = below.count > 0 && above[bin].count > 0;
@@ -210,10 +210,10 @@ fn costs(items: &[Item], bins: Bins) -> impl Iterator<Item = (usize, f64)> {
     })
 }
 
-impl Summary {
+impl EmitterSummary {
     const EMPTY: Self = Self { count: 0, bounds: Aabb::EMPTY, intensity: 0.0, cone: None };
 
-    fn with(&self, item: &Item) -> Self {
+    fn with(&self, item: &PlacedEmitter) -> Self {
         self.union(&Self {
             count: 1,
             bounds: item.bounds,

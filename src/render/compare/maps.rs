@@ -61,26 +61,26 @@ fn mean(values: &[Option<f64>]) -> f64 {
 mod tests {
     use super::*;
     use crate::render::FilmStats;
-    use crate::render::synthetic::{Level, sampled};
+    use crate::render::synthetic::{GrayLevel, sampled};
 
     const SIZE: UVec2 = UVec2::new(30, 20);
 
     #[test]
     fn the_map_of_noise_is_that_of_the_picture() {
-        let film = sampled(&Level { seed: 1, mean: 2.0, spread: 1.0 }, SIZE, 16);
+        let film = sampled(&GrayLevel { seed: 1, mean: 2.0, spread: 1.0 }, SIZE, 16);
         let map = noise(&film);
         assert_eq!(map.len(), 600);
         let square = map.iter().map(|&x| f64::from(x).powi(2)).sum::<f64>() / 600.0;
         let expected = FilmStats::of(&film).noise.unwrap();
         assert!((square.sqrt() / expected - 1.0).abs() < 1e-5);
-        let constant = sampled(&Level { seed: 1, mean: 0.1, spread: 0.0 }, SIZE, 13);
+        let constant = sampled(&GrayLevel { seed: 1, mean: 0.1, spread: 0.0 }, SIZE, 13);
         assert!(noise(&constant).iter().all(|&x| x == 0.0), "rounding is no noise");
         assert!(noise(&Film::new(SIZE).unwrap()).iter().all(|&x| x == 0.0));
     }
 
     #[test]
     fn differences_are_relative_and_signed() {
-        let film = |mean| sampled(&Level { seed: 1, mean, spread: 0.0 }, SIZE, 2);
+        let film = |mean| sampled(&GrayLevel { seed: 1, mean, spread: 0.0 }, SIZE, 2);
         let map = difference([&film(1.0), &film(3.0)]);
         assert!(map.iter().all(|&x| (x - 1.0).abs() < 1e-6));
         let empty = Film::new(SIZE).unwrap();

@@ -1,6 +1,6 @@
 //! How much faster one setting is than another, and the sentence that says so.
 
-use super::Side;
+use super::SideFigures;
 use crate::format::rounded;
 use crate::render::estimate::FEWEST_FOR_VARIANCE;
 
@@ -30,7 +30,7 @@ impl SpeedUp {
     /// part of the picture says nothing of another.
     ///
     /// The error is that of the estimated variances, and of the clock.
-    pub fn new(a: &Side, b: &Side) -> Option<Self> {
+    pub fn new(a: &SideFigures, b: &SideFigures) -> Option<Self> {
         if a.fewest_samples.min(b.fewest_samples) < FEWEST_FOR_VARIANCE {
             return None;
         }
@@ -87,7 +87,7 @@ impl SpeedUp {
 }
 
 /// See [`Comparison::sentence`](super::Comparison::sentence).
-pub(super) fn sentence(sides: &[Side; 2], speed_up: Option<&SpeedUp>) -> String {
+pub(super) fn sentence(sides: &[SideFigures; 2], speed_up: Option<&SpeedUp>) -> String {
     match speed_up {
         Some(speed_up) if speed_up.is_clear() => {
             let (winner, loser) = if speed_up.ratio > 1.0 { ("B", "A") } else { ("A", "B") };
@@ -103,7 +103,7 @@ pub(super) fn sentence(sides: &[Side; 2], speed_up: Option<&SpeedUp>) -> String 
 }
 
 /// Why there is nothing to say.
-fn unknown(sides: &[Side; 2]) -> String {
+fn unknown(sides: &[SideFigures; 2]) -> String {
     match [0, 1].map(|side| sides[side].is_noiseless()) {
         [true, true] => "Neither A nor B shows any noise",
         [true, false] => "A shows no noise, so that times can't be compared",
@@ -142,7 +142,7 @@ mod tests {
     use super::*;
 
     fn sentence_of(ratio: f64, log_error: f64) -> String {
-        sentence(&[Side::default(); 2], Some(&SpeedUp { ratio, log_error }))
+        sentence(&[SideFigures::default(); 2], Some(&SpeedUp { ratio, log_error }))
     }
 
     #[test]
@@ -171,20 +171,21 @@ mod tests {
 
     #[test]
     fn without_noise_or_samples_there_is_nothing_to_compare() {
-        let silent = Side {
+        let silent = SideFigures {
             fewest_samples: 2,
             variance_of_mean: Some(0.0),
             cpu_seconds: 1.0,
-            ..Side::default()
+            ..SideFigures::default()
         };
-        let noisy = Side { variance_of_mean: Some(1.0), variance_error: Some(0.1), ..silent };
+        let noisy =
+            SideFigures { variance_of_mean: Some(1.0), variance_error: Some(0.1), ..silent };
         assert_eq!(SpeedUp::new(&silent, &noisy), None);
         assert!(sentence(&[silent, noisy], None).starts_with("A shows no noise"));
         assert!(sentence(&[noisy, silent], None).starts_with("B shows no noise"));
         assert!(sentence(&[silent; 2], None).starts_with("Neither"));
-        assert!(sentence(&[Side::default(); 2], None).contains("too few samples"));
-        let timeless = Side { cpu_seconds: 0.0, ..noisy };
-        let partly = Side { fewest_samples: 1, ..noisy };
+        assert!(sentence(&[SideFigures::default(); 2], None).contains("too few samples"));
+        let timeless = SideFigures { cpu_seconds: 0.0, ..noisy };
+        let partly = SideFigures { fewest_samples: 1, ..noisy };
         assert_eq!(SpeedUp::new(&partly, &noisy), None, "the noise of one part of the picture");
         assert_eq!(SpeedUp::new(&timeless, &noisy), None);
     }

@@ -2,7 +2,7 @@
 
 use glam::UVec2;
 
-use super::Side;
+use super::SideFigures;
 use crate::render::area::Area;
 use crate::render::estimate::{PixelEstimate, gray};
 use crate::render::film::Film;
@@ -44,7 +44,7 @@ impl Default for Tally {
 }
 
 /// What pixels are read from.
-pub(super) trait Source: Sync {
+pub(super) trait PixelSource: Sync {
     /// Width and height.
     fn size(&self) -> UVec2;
 
@@ -62,7 +62,7 @@ pub(super) struct Estimate {
     variance: Option<(f64, f64)>,
 }
 
-impl Source for Film {
+impl PixelSource for Film {
     fn size(&self) -> UVec2 {
         self.size()
     }
@@ -79,7 +79,7 @@ impl Source for Film {
 }
 
 /// Pixels without samples show their block and count as if they had none of their own.
-impl Source for Picture {
+impl PixelSource for Picture {
     fn size(&self) -> UVec2 {
         self.size
     }
@@ -103,7 +103,7 @@ impl Source for Picture {
 
 impl Tally {
     /// Over the pixels of `area`, all of which the source has.
-    pub fn of(source: &impl Source, area: &Area) -> Self {
+    pub fn of(source: &impl PixelSource, area: &Area) -> Self {
         let mut tally = Self::default();
         for pixel in area.iter() {
             let samples = source.samples(pixel);
@@ -146,11 +146,11 @@ impl Tally {
     }
 
     /// The figures that come of it.
-    pub fn side(&self, cpu_seconds: f64) -> Side {
+    pub fn side(&self, cpu_seconds: f64) -> SideFigures {
         let mean_of = |sum: f64, count: u64| (count > 0).then(|| sum / count as f64);
         let variance = mean_of(self.variance, self.measured);
         let mean = mean_of(self.gray, self.measured).filter(|&mean| mean > 0.0);
-        Side {
+        SideFigures {
             samples_per_pixel: mean_of(self.samples as f64, self.pixels).unwrap_or(0.0),
             fewest_samples: if self.pixels > 0 { self.fewest_samples } else { 0 },
             cpu_seconds,

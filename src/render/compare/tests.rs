@@ -4,12 +4,12 @@ use glam::UVec2;
 
 use super::*;
 use crate::render::FilmStats;
-use crate::render::synthetic::{Fireflies, Level, sampled};
+use crate::render::synthetic::{Fireflies, GrayLevel, sampled};
 
 const SIZE: UVec2 = UVec2::new(40, 30);
 
 fn level(seed: u64, mean: f32, spread: f32, samples: u32) -> Film {
-    sampled(&Level { seed, mean, spread }, SIZE, samples)
+    sampled(&GrayLevel { seed, mean, spread }, SIZE, samples)
 }
 
 /// A has 9 times the variance of B for a third of the samples and twice the CPU time: it needs
@@ -51,7 +51,7 @@ fn the_interval_covers_the_truth_as_often_as_it_says() {
     let mut uniform = 0;
     let mut rare = 0;
     for seed in 0..seeds {
-        let film = |seed, spread| sampled(&Level { seed, mean: 1.0, spread }, size, 16);
+        let film = |seed, spread| sampled(&GrayLevel { seed, mean: 1.0, spread }, size, 16);
         uniform += u32::from(covers(&film(2 * seed, 0.6), &film(2 * seed + 1, 0.3), 4.0));
         // 1 / chance − 1 of 49 and 499, with some 80 events on each film: no Gaussian formula
         // would know how far to trust that.
@@ -90,7 +90,7 @@ fn an_area_has_figures_of_its_own() {
     impl crate::transport::PixelSampler for Halves {
         fn sample(&self, pixel: UVec2, sample: u32) -> crate::transport::PathSample {
             let (mean, spread) = if pixel.x < 20 { (2.0, 1.0) } else { (0.5, 0.1) };
-            Level { seed: self.0, mean, spread }.sample(pixel, sample)
+            GrayLevel { seed: self.0, mean, spread }.sample(pixel, sample)
         }
     }
     let films = [0, 1].map(|seed| sampled(&Halves(seed), SIZE, 16));
@@ -176,7 +176,7 @@ fn a_local_bias_is_found_in_its_block() {
     impl crate::transport::PixelSampler for Spot {
         fn sample(&self, pixel: UVec2, sample: u32) -> crate::transport::PathSample {
             let mean = if pixel.x < 16 && pixel.y < 16 { 1.05 } else { 0.986 };
-            Level { seed: 9, mean, spread: 0.5 }.sample(pixel, sample)
+            GrayLevel { seed: 9, mean, spread: 0.5 }.sample(pixel, sample)
         }
     }
     let films = [level(8, 1.0, 0.5, 16), sampled(&Spot, SIZE, 16)];
@@ -239,7 +239,7 @@ fn a_rectangle_with_all_samples_is_known_better_than_the_rest() {
         focus: Some((area, 40)),
         ..Default::default()
     };
-    let inside = Side::of_picture(&picture, Some(area));
+    let inside = SideFigures::of_picture(&picture, Some(area));
     assert_eq!((inside.fewest_samples, inside.samples_per_pixel), (40, 40.0));
-    assert_eq!(Side::of_picture(&picture, None).fewest_samples, 1);
+    assert_eq!(SideFigures::of_picture(&picture, None).fewest_samples, 1);
 }

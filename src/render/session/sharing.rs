@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use crate::render::turns::{self, Account, Share};
+use crate::render::turns::{self, Share, Usage};
 
 /// What two sessions have had of the machine.
 #[derive(Debug, Default)]
@@ -12,7 +12,7 @@ pub struct Sharing {
 
 #[derive(Debug, Default)]
 struct Desk {
-    accounts: [Account; 2],
+    accounts: [Usage; 2],
     /// The side at work.
     working: Option<usize>,
     share: Share,
@@ -47,9 +47,9 @@ impl Seat {
 
     /// Asks for a turn with what the side has had so far, after which [`Seat::end`] must follow;
     /// false while it is the other's, or the other is still at its own.
-    pub(super) fn begin(&self, account: Account) -> bool {
+    pub(super) fn begin(&self, account: Usage) -> bool {
         let mut desk = self.sharing.desk();
-        desk.accounts[self.side] = Account { closed: false, ..account };
+        desk.accounts[self.side] = Usage { closed: false, ..account };
         let free = desk.working.is_none_or(|side| side == self.side);
         let mine = free && turns::next(&desk.accounts, desk.share) == Some(self.side);
         if mine {
@@ -59,7 +59,7 @@ impl Seat {
     }
 
     /// Ends a turn with what the side has had so far.
-    pub(super) fn end(&self, account: Account) {
+    pub(super) fn end(&self, account: Usage) {
         let mut desk = self.sharing.desk();
         desk.accounts[self.side] = account;
         if desk.working == Some(self.side) {
@@ -81,8 +81,8 @@ impl Seat {
 mod tests {
     use super::*;
 
-    fn had(cpu_seconds: f64) -> Account {
-        Account { cpu_seconds, ..Account::default() }
+    fn had(cpu_seconds: f64) -> Usage {
+        Usage { cpu_seconds, ..Usage::default() }
     }
 
     #[test]
@@ -103,7 +103,7 @@ mod tests {
     fn equal_samples_are_another_share() {
         let [a, b] = Sharing::seats();
         a.set_share(Share::Samples);
-        let account = |cpu_seconds, samples| Account { cpu_seconds, samples, closed: false };
+        let account = |cpu_seconds, samples| Usage { cpu_seconds, samples, closed: false };
         assert!(b.begin(account(1.0, 8.0)));
         b.end(account(2.0, 8.0));
         assert!(a.begin(account(9.0, 4.0)), "fewer samples, more time");

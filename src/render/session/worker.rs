@@ -13,10 +13,10 @@ use crate::render::area::Area;
 use crate::render::film::Film;
 use crate::render::headless::same_size;
 use crate::render::pool::{Failure, Pool};
-use crate::render::progressive::{Engine, Step};
+use crate::render::progressive::{ProgressiveRender, RenderStep};
 use crate::render::publish::{Extras, Picture};
 use crate::render::schedule::Limits;
-use crate::render::turns::Account;
+use crate::render::turns::Usage;
 use crate::transport::PixelSampler;
 
 /// How long a request without a picture is left to get one when the next already waits. Otherwise
@@ -49,7 +49,7 @@ pub(super) struct Worker {
 
 /// The request being rendered.
 struct Active {
-    engine: Engine,
+    engine: ProgressiveRender,
     generation: u64,
     begun: Instant,
     failed: bool,
@@ -81,7 +81,12 @@ enum Awaits {
 }
 
 impl Active {
-    fn new(engine: Engine, generation: u64, provisional: bool, resumed_at: Option<f64>) -> Self {
+    fn new(
+        engine: ProgressiveRender,
+        generation: u64,
+        provisional: bool,
+        resumed_at: Option<f64>,
+    ) -> Self {
         Self {
             engine,
             generation,
@@ -162,11 +167,11 @@ impl Worker {
     }
 
     /// What the present request has had of the machine.
-    fn account(&self) -> Account {
+    fn account(&self) -> Usage {
         let engine = self.job.as_ref().map(|job| &job.engine);
-        Account {
-            cpu_seconds: engine.map_or(0.0, Engine::cpu_seconds),
-            samples: engine.map_or(0.0, Engine::samples_per_pixel),
+        Usage {
+            cpu_seconds: engine.map_or(0.0, ProgressiveRender::cpu_seconds),
+            samples: engine.map_or(0.0, ProgressiveRender::samples_per_pixel),
             closed: false,
         }
     }
@@ -274,7 +279,8 @@ impl Worker {
         match film_for(request.resume, request.size, old_film) {
             Ok(film) => {
                 let limits = Limits { spp: request.spp, seconds: None };
-                let mut engine = Engine::new(request.sampler, film, limits, self.seconds_per_path);
+                let mut engine =
+                    ProgressiveRender::new(request.sampler, film, limits, self.seconds_per_path);
                 engine.focus(self.area);
                 engine.count_in(cpu_seconds);
                 let (generation, provisional) = (request.generation, request.provisional);
@@ -337,14 +343,14 @@ impl Worker {
         let step = job.engine.step(&self.pool, paused, &stop);
         let finished = job.engine.is_finished();
         let due = job.may_show() && job.engine.publish_due() || finished && !job.shown_final;
-        if due && !matches!(step, Step::Interrupted) {
+        if due && !matches!(step, RenderStep::Interrupted) {
             job.shown_final = finished;
             self.publish();
         }
         match step {
-            Step::Worked | Step::Interrupted => Wait::Nothing,
-            Step::Paused | Step::Done => Wait::Letter,
-            Step::Failed(failure) => {
+            RenderStep::Worked | RenderStep::Interrupted => Wait::Nothing,
+            RenderStep::Paused | RenderStep::Done => Wait::Letter,
+            RenderStep::Failed(failure) => {
                 if let Some(job) = &mut self.job {
                     job.failed = true;
                     let generation = job.generation;

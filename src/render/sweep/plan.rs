@@ -9,7 +9,7 @@ pub type Idle<'a> = dyn Fn(Toggle, &Strategy) -> Option<&'static str> + 'a;
 
 /// Where a trial stands among the strategies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum TrialKind {
     /// Every toggle off.
     Baseline,
     /// Every toggle on.
@@ -22,7 +22,7 @@ pub enum Kind {
     AsSet,
 }
 
-impl Kind {
+impl TrialKind {
     /// What it is called within a sentence.
     pub fn name(self) -> String {
         let lower = |toggle: Toggle| toggle.name().to_lowercase();
@@ -47,13 +47,13 @@ impl Kind {
 
 /// How a trial comes by its figures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Source {
+pub enum TrialSource {
     /// By rendering.
     Rendered,
     /// From another trial that does the same in this scene.
     SameAs {
         /// That trial.
-        twin: Kind,
+        twin: TrialKind,
         /// Why it does.
         why: &'static str,
     },
@@ -65,11 +65,11 @@ pub enum Source {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trial {
     /// Where it stands.
-    pub kind: Kind,
+    pub kind: TrialKind,
     /// What is on.
     pub strategy: Strategy,
     /// How it comes by its figures.
-    pub source: Source,
+    pub source: TrialSource,
 }
 
 /// The trials of a sweep around `strategy`, whose integrator and finer choices all of them share.
@@ -77,11 +77,12 @@ pub struct Trial {
 pub fn plan(strategy: &Strategy, idle: &Idle<'_>) -> Vec<Trial> {
     let [baseline, full] =
         [Preset::Baseline, Preset::Full].map(|preset| strategy.with_toggles_of(preset));
-    let mut wanted = vec![(Kind::Baseline, baseline), (Kind::Full, full)];
-    wanted.extend(Toggle::ALL.map(|toggle| (Kind::Alone(toggle), toggle.set(&baseline, true))));
-    wanted.extend(Toggle::ALL.map(|toggle| (Kind::Without(toggle), toggle.set(&full, false))));
+    let mut wanted = vec![(TrialKind::Baseline, baseline), (TrialKind::Full, full)];
+    wanted
+        .extend(Toggle::ALL.map(|toggle| (TrialKind::Alone(toggle), toggle.set(&baseline, true))));
+    wanted.extend(Toggle::ALL.map(|toggle| (TrialKind::Without(toggle), toggle.set(&full, false))));
     if wanted.iter().all(|(_, other)| other != strategy) {
-        wanted.push((Kind::AsSet, *strategy));
+        wanted.push((TrialKind::AsSet, *strategy));
     }
     let mut trials = Vec::with_capacity(wanted.len());
     for (kind, strategy) in wanted {
@@ -91,19 +92,19 @@ pub fn plan(strategy: &Strategy, idle: &Idle<'_>) -> Vec<Trial> {
     trials
 }
 
-fn source(earlier: &[Trial], strategy: &Strategy, idle: &Idle<'_>) -> Source {
+fn source(earlier: &[Trial], strategy: &Strategy, idle: &Idle<'_>) -> TrialSource {
     if let Some(reason) = strategy.tracker_refusal() {
-        return Source::Refused(reason);
+        return TrialSource::Refused(reason);
     }
     let effective = effective(strategy, idle);
     let is_twin = |trial: &Trial| {
-        trial.source == Source::Rendered && self::effective(&trial.strategy, idle) == effective
+        trial.source == TrialSource::Rendered && self::effective(&trial.strategy, idle) == effective
     };
     match earlier.iter().find(|trial| is_twin(trial)) {
         Some(Trial { kind, strategy: other, .. }) => {
-            Source::SameAs { twin: *kind, why: why(other, strategy, idle) }
+            TrialSource::SameAs { twin: *kind, why: why(other, strategy, idle) }
         }
-        None => Source::Rendered,
+        None => TrialSource::Rendered,
     }
 }
 
@@ -136,7 +137,7 @@ mod tests {
         idle.then_some(SUBSUMED)
     }
 
-    fn find(trials: &[Trial], kind: Kind) -> &Trial {
+    fn find(trials: &[Trial], kind: TrialKind) -> &Trial {
         trials.iter().find(|trial| trial.kind == kind).unwrap()
     }
 
@@ -145,14 +146,14 @@ mod tests {
         let set = Strategy::default();
         let trials = plan(&set, &|_, _| None);
         assert_eq!(trials.len(), 12);
-        assert!(trials.iter().all(|trial| trial.source == Source::Rendered));
+        assert!(trials.iter().all(|trial| trial.source == TrialSource::Rendered));
         for toggle in Toggle::ALL {
             let on = |kind| {
                 let strategy = find(&trials, kind).strategy;
                 Toggle::ALL.into_iter().filter(|toggle| toggle.is_on(&strategy)).collect::<Vec<_>>()
             };
-            assert_eq!(on(Kind::Alone(toggle)), [toggle]);
-            let left = on(Kind::Without(toggle));
+            assert_eq!(on(TrialKind::Alone(toggle)), [toggle]);
+            let left = on(TrialKind::Without(toggle));
             assert!(left.len() == 4 && !left.contains(&toggle));
         }
     }
@@ -164,7 +165,7 @@ mod tests {
         assert_eq!(plan(&set, &|_, _| None).len(), 12);
         set.nee = true;
         let trials = plan(&set, &|_, _| None);
-        assert_eq!((trials.len(), find(&trials, Kind::AsSet).strategy), (13, set));
+        assert_eq!((trials.len(), find(&trials, TrialKind::AsSet).strategy), (13, set));
         assert!(trials.iter().all(|trial| trial.strategy.advanced == set.advanced));
     }
 
@@ -172,30 +173,30 @@ mod tests {
     fn what_changes_nothing_is_rendered_once() {
         let trials = plan(&Strategy::default(), &subsumed);
         let toggle = Toggle::EmissionDecoupling;
-        let twin = find(&trials, Kind::Without(toggle)).source;
-        assert_eq!(twin, Source::SameAs { twin: Kind::Full, why: SUBSUMED });
-        assert_eq!(find(&trials, Kind::Alone(toggle)).source, Source::Rendered);
+        let twin = find(&trials, TrialKind::Without(toggle)).source;
+        assert_eq!(twin, TrialSource::SameAs { twin: TrialKind::Full, why: SUBSUMED });
+        assert_eq!(find(&trials, TrialKind::Alone(toggle)).source, TrialSource::Rendered);
 
         // Smoke that does not glow leaves one strategy and the baseline.
         let dark = |toggle, _: &Strategy| (toggle != Toggle::Probes).then_some(DARK);
         let trials = plan(&Strategy::default(), &dark);
-        let rendered = trials.iter().filter(|trial| trial.source == Source::Rendered);
+        let rendered = trials.iter().filter(|trial| trial.source == TrialSource::Rendered);
         assert_eq!(
             rendered.map(|trial| trial.kind).collect::<Vec<_>>(),
-            [Kind::Baseline, Kind::Full]
+            [TrialKind::Baseline, TrialKind::Full]
         );
         let twin = |kind| find(&trials, kind).source;
         assert_eq!(
-            twin(Kind::Alone(Toggle::Probes)),
-            Source::SameAs { twin: Kind::Full, why: DARK }
+            twin(TrialKind::Alone(Toggle::Probes)),
+            TrialSource::SameAs { twin: TrialKind::Full, why: DARK }
         );
         assert_eq!(
-            twin(Kind::Without(Toggle::Probes)),
-            Source::SameAs { twin: Kind::Baseline, why: DARK }
+            twin(TrialKind::Without(Toggle::Probes)),
+            TrialSource::SameAs { twin: TrialKind::Baseline, why: DARK }
         );
         assert_eq!(
-            twin(Kind::Alone(Toggle::FireAsLight)),
-            Source::SameAs { twin: Kind::Baseline, why: DARK }
+            twin(TrialKind::Alone(Toggle::FireAsLight)),
+            TrialSource::SameAs { twin: TrialKind::Baseline, why: DARK }
         );
     }
 
@@ -204,16 +205,16 @@ mod tests {
         let mut set = Preset::Emission.strategy();
         set.advanced.tracker = Tracker::Decomposition;
         let trials = plan(&set, &|_, _| None);
-        let refused = |kind| matches!(find(&trials, kind).source, Source::Refused(_));
-        assert!(refused(Kind::Baseline) && refused(Kind::Full));
-        assert!(!refused(Kind::Without(Toggle::Probes)));
+        let refused = |kind| matches!(find(&trials, kind).source, TrialSource::Refused(_));
+        assert!(refused(TrialKind::Baseline) && refused(TrialKind::Full));
+        assert!(!refused(TrialKind::Without(Toggle::Probes)));
     }
 
     #[test]
     fn names_fit_into_sentences() {
-        let kind = Kind::Without(Toggle::MajorantBoost);
+        let kind = TrialKind::Without(Toggle::MajorantBoost);
         assert_eq!(kind.name(), "full without majorant boost");
         assert_eq!(kind.title(), "Full without majorant boost");
-        assert_eq!(Kind::Alone(Toggle::FireAsLight).title(), "Fire as a light alone");
+        assert_eq!(TrialKind::Alone(Toggle::FireAsLight).title(), "Fire as a light alone");
     }
 }

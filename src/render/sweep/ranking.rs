@@ -1,18 +1,18 @@
 //! The figures of a sweep: which strategy needs least time for the same noise, and how well that
 //! is known.
 
-use super::plan::{Kind, Source, Trial};
-use crate::render::compare::{Side, SpeedUp};
+use super::plan::{Trial, TrialKind, TrialSource};
+use crate::render::compare::{SideFigures, SpeedUp};
 use crate::transport::toggle::Toggle;
 
 /// A trial with its figures.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Entry {
+pub struct RankedTrial {
     /// What was tried.
     pub trial: Trial,
     /// Noise and cost: its own, or those of the trial that does the same; none where it could not
     /// be rendered.
-    pub side: Option<Side>,
+    pub side: Option<SideFigures>,
     /// How much faster it is than the baseline; none while that is not known at all.
     pub over_baseline: Option<SpeedUp>,
     /// How much faster it is than the best, so at most 1.
@@ -46,7 +46,7 @@ pub enum Gain {
 pub struct Ranking {
     /// The trials, the fastest first and what does the same behind its twin; last those of which
     /// nothing is known.
-    pub entries: Vec<Entry>,
+    pub entries: Vec<RankedTrial>,
     /// The number of the entry to leave on; none while something is not known yet.
     pub leave_on: Option<usize>,
     /// What each toggle brings, in the order of the strategy.
@@ -58,7 +58,7 @@ const SAME: SpeedUp = SpeedUp { ratio: 1.0, log_error: 0.0 };
 
 impl Ranking {
     /// Ranks `trials` by the figures of those that were rendered.
-    pub fn new(trials: &[Trial], sides: &[Option<Side>]) -> Self {
+    pub fn new(trials: &[Trial], sides: &[Option<SideFigures>]) -> Self {
         let all = Figures { trials, sides };
         let known = (0..trials.len()).filter(|&number| all.cost(number).is_some());
         let by_cost = |a: &usize, b: &usize| all.key(*a).total_cmp(&all.key(*b));
@@ -66,13 +66,13 @@ impl Ranking {
         let mut order: Vec<usize> = (0..trials.len()).collect();
         // Sorting is stable, and a twin comes behind the trial that was rendered for both.
         order.sort_by(by_cost);
-        let entry = |&number: &usize| Entry {
+        let entry = |&number: &usize| RankedTrial {
             trial: trials[number],
             side: all.side(number),
-            over_baseline: all.speed_up(all.find(Kind::Baseline), Some(number)),
+            over_baseline: all.speed_up(all.find(TrialKind::Baseline), Some(number)),
             over_best: all.speed_up(best, Some(number)),
         };
-        let entries: Vec<Entry> = order.iter().map(entry).collect();
+        let entries: Vec<RankedTrial> = order.iter().map(entry).collect();
         // What is not known yet may be the best of all.
         let all_known = entries.iter().all(|entry| entry.is_known() || !entry.is_rendered());
         let leave_on = best.filter(|_| all_known).map(|_| leave_on(&entries));
@@ -80,18 +80,19 @@ impl Ranking {
     }
 
     /// The entry to leave on.
-    pub fn best(&self) -> Option<&Entry> {
+    pub fn best(&self) -> Option<&RankedTrial> {
         self.leave_on.and_then(|number| self.entries.get(number))
     }
 }
 
 /// Everything on, where nothing is known to be faster, and else what is.
-fn leave_on(entries: &[Entry]) -> usize {
-    let is_it = |entry: &Entry| entry.trial.kind == Kind::Full && entry.is_as_good_as_best();
+fn leave_on(entries: &[RankedTrial]) -> usize {
+    let is_it =
+        |entry: &RankedTrial| entry.trial.kind == TrialKind::Full && entry.is_as_good_as_best();
     entries.iter().position(is_it).unwrap_or(0)
 }
 
-impl Entry {
+impl RankedTrial {
     /// Whether no difference from the best is known, although one as large as a half would be.
     pub fn is_as_good_as_best(&self) -> bool {
         self.over_best.is_some_and(|speed_up| !speed_up.is_clear() && !speed_up.is_vague())
@@ -109,26 +110,26 @@ impl Entry {
 
     /// Whether it was rendered itself.
     pub fn is_rendered(&self) -> bool {
-        self.trial.source == Source::Rendered
+        self.trial.source == TrialSource::Rendered
     }
 }
 
 /// Figures by the numbers of their trials.
 struct Figures<'a> {
     trials: &'a [Trial],
-    sides: &'a [Option<Side>],
+    sides: &'a [Option<SideFigures>],
 }
 
 impl Figures<'_> {
     /// The trial that was rendered for this one.
     fn rendered(&self, number: usize) -> usize {
         match self.trials[number].source {
-            Source::SameAs { twin, .. } => self.find(twin).unwrap_or(number),
+            TrialSource::SameAs { twin, .. } => self.find(twin).unwrap_or(number),
             _ => number,
         }
     }
 
-    fn side(&self, number: usize) -> Option<Side> {
+    fn side(&self, number: usize) -> Option<SideFigures> {
         self.sides.get(self.rendered(number)).copied().flatten()
     }
 
@@ -146,7 +147,7 @@ impl Figures<'_> {
         self.cost(number).unwrap_or(f64::INFINITY)
     }
 
-    fn find(&self, kind: Kind) -> Option<usize> {
+    fn find(&self, kind: TrialKind) -> Option<usize> {
         self.trials.iter().position(|trial| trial.kind == kind)
     }
 
@@ -161,8 +162,8 @@ impl Figures<'_> {
         let gain = |from, to| self.gain(self.find(from), self.find(to));
         Worth {
             toggle,
-            alone: gain(Kind::Baseline, Kind::Alone(toggle)),
-            left_out: gain(Kind::Full, Kind::Without(toggle)),
+            alone: gain(TrialKind::Baseline, TrialKind::Alone(toggle)),
+            left_out: gain(TrialKind::Full, TrialKind::Without(toggle)),
         }
     }
 
@@ -170,7 +171,7 @@ impl Figures<'_> {
     fn gain(&self, from: Option<usize>, to: Option<usize>) -> Gain {
         let (Some(from), Some(to)) = (from, to) else { return Gain::Unknown };
         match self.trials[to].source {
-            Source::SameAs { why, .. } if self.rendered(to) == self.rendered(from) => {
+            TrialSource::SameAs { why, .. } if self.rendered(to) == self.rendered(from) => {
                 Gain::Nothing(why)
             }
             _ => self.speed_up(Some(from), Some(to)).map_or(Gain::Unknown, Gain::Of),

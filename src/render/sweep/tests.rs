@@ -33,7 +33,7 @@ fn swept(
     amount: Amount,
     threads: usize,
     interrupt: &AtomicBool,
-    progress: &mut dyn FnMut(Progress),
+    progress: &mut dyn FnMut(SweepProgress),
 ) -> (Vec<Trial>, Result<Swept>) {
     let scene = scene();
     let idle = |toggle, strategy: &Strategy| {
@@ -59,13 +59,13 @@ fn every_strategy_gets_its_samples() {
     assert!(!one.interrupted && one.failure.is_none());
     for (trial, tried) in std::iter::zip(&trials, &one.tried) {
         let samples = tried.map(|tried| tried.side.fewest_samples);
-        let is_rendered = trial.source == Source::Rendered;
+        let is_rendered = trial.source == TrialSource::Rendered;
         assert_eq!(samples, is_rendered.then_some(9), "{:?}", trial.kind);
     }
-    assert_eq!(steps[0], Progress::Preparing(0, 11));
+    assert_eq!(steps[0], SweepProgress::Preparing(0, 11));
     let mut parts = steps.iter().filter_map(|step| match step {
-        Progress::Rendering(part) => Some(*part),
-        Progress::Preparing(..) => None,
+        SweepProgress::Rendering(part) => Some(*part),
+        SweepProgress::Preparing(..) => None,
     });
     assert!(parts.clone().is_sorted() && parts.next_back() == Some(1.0));
     let ranking = one.ranking(&trials);
@@ -87,14 +87,18 @@ fn probes_that_are_shared_are_those_of_each_strategy() {
     let (trials, swept) = swept(amount, 2, &go_on, &mut |_| ());
     let swept = swept.unwrap();
     let pool = Pool::new(Some(2), Priority::Normal).unwrap();
-    for kind in [Kind::Baseline, Kind::Alone(Toggle::Probes), Kind::Without(Toggle::FireAsLight)] {
+    for kind in [
+        TrialKind::Baseline,
+        TrialKind::Alone(Toggle::Probes),
+        TrialKind::Without(Toggle::FireAsLight),
+    ] {
         let number = trials.iter().position(|trial| trial.kind == kind).unwrap();
         let scene = Scene { strategy: trials[number].strategy, ..scene() };
         let frame: Arc<dyn PixelSampler> = Arc::new(Frame::new(Arc::new(scene), SIZE, 3));
-        let mut alone = [Turning::new(frame, SIZE, amount).unwrap()];
+        let mut alone = [SideInProgress::new(frame, SIZE, amount).unwrap()];
         take_turns(&mut alone, &pool, &go_on, &mut |_| ());
         let [alone] = alone;
-        let mean = Side::of(&alone.finish(&pool).film, 1.0).mean_rgb;
+        let mean = SideFigures::of(&alone.finish(&pool).film, 1.0).mean_rgb;
         assert_eq!(swept.tried[number].unwrap().side.mean_rgb, mean, "{kind:?}");
     }
 }
@@ -129,7 +133,7 @@ fn an_interrupt_keeps_what_there_is() {
     // A piece of work brings 64 samples at most, so that none is further behind than that.
     let (trials, swept_until) = swept(amount, 2, &stop, &mut |progress| {
         let enough =
-            matches!(progress, Progress::Rendering(part) if part * f64::from(1 << 20) > 80.0);
+            matches!(progress, SweepProgress::Rendering(part) if part * f64::from(1 << 20) > 80.0);
         stop.store(enough, Ordering::Relaxed);
     });
     let swept_until = swept_until.unwrap();
@@ -138,7 +142,7 @@ fn an_interrupt_keeps_what_there_is() {
     // Before every pixel has two samples, nothing is known of the noise.
     stop.store(false, Ordering::Relaxed);
     let (trials, early) = swept(amount, 2, &stop, &mut |progress| {
-        stop.store(matches!(progress, Progress::Rendering(_)), Ordering::Relaxed);
+        stop.store(matches!(progress, SweepProgress::Rendering(_)), Ordering::Relaxed);
     });
     let early = early.unwrap();
     assert_eq!((early.interrupted, early.ranking(&trials).leave_on), (true, None));

@@ -1,7 +1,7 @@
 //! What a sweep found, in words.
 
-use super::plan::Source;
-use super::ranking::{Entry, Gain, Ranking, Worth};
+use super::plan::TrialSource;
+use super::ranking::{Gain, RankedTrial, Ranking, Worth};
 use crate::format::{percent, rounded};
 use crate::render::compare::SpeedUp;
 
@@ -26,7 +26,7 @@ pub fn headline(ranking: &Ranking) -> String {
             let share = speed_up.share();
             format!("Leave on {name}: {share} of baseline's time for the same noise")
         }
-        Some(_) if ranking.entries.iter().any(Entry::is_vague) => {
+        Some(_) if ranking.entries.iter().any(RankedTrial::is_vague) => {
             "It is too early to tell whether any strategy is faster than baseline; give each more \
              time"
                 .to_owned()
@@ -85,15 +85,15 @@ fn gains(ranking: &Ranking, gain: fn(&Worth) -> Gain) -> Option<Vec<(String, Spe
 
 /// Which strategies can't be told from the one to leave on.
 fn not_told_apart(ranking: &Ranking) -> Vec<String> {
-    let names = |is_meant: fn(&Entry) -> bool| {
+    let names = |is_meant: fn(&RankedTrial) -> bool| {
         let others = ranking.entries.iter().enumerate().filter(|(number, entry)| {
             Some(*number) != ranking.leave_on && entry.is_rendered() && is_meant(entry)
         });
         others.map(|(_, entry)| entry.trial.kind.name()).collect::<Vec<_>>()
     };
     let groups = [
-        ("As good within what is known", names(Entry::is_as_good_as_best)),
-        ("Too early to tell from it", names(Entry::is_vague)),
+        ("As good within what is known", names(RankedTrial::is_as_good_as_best)),
+        ("Too early to tell from it", names(RankedTrial::is_vague)),
     ];
     let told = groups.into_iter().filter(|(_, names)| !names.is_empty());
     told.map(|(what, names)| format!("{what}: {}", listed(&names))).collect()
@@ -128,10 +128,10 @@ pub fn relative_time(speed_up: &SpeedUp) -> String {
 }
 
 /// Why an entry has no figures of its own; none where it has.
-pub fn note(entry: &Entry) -> Option<String> {
+pub fn note(entry: &RankedTrial) -> Option<String> {
     match entry.trial.source {
-        Source::Rendered => None,
-        Source::SameAs { twin, why } => Some(format!("same as {}: {why}", twin.name())),
-        Source::Refused(why) => Some(format!("cannot be rendered: {why}")),
+        TrialSource::Rendered => None,
+        TrialSource::SameAs { twin, why } => Some(format!("same as {}: {why}", twin.name())),
+        TrialSource::Refused(why) => Some(format!("cannot be rendered: {why}")),
     }
 }

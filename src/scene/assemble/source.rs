@@ -33,12 +33,12 @@ pub(super) struct ShapeSource {
 }
 
 /// Either of them.
-pub(super) enum Source<'a> {
+pub(super) enum VolumeSource<'a> {
     Grids(GridSource<'a>),
     Shape(ShapeSource),
 }
 
-impl<'a> Source<'a> {
+impl<'a> VolumeSource<'a> {
     /// The values of a grid of single numbers; `field` is the key that names the grid.
     pub(super) fn scalar(&mut self, grid: &str, field: &str) -> Result<ScalarField> {
         match self {

@@ -53,7 +53,7 @@ fn material(settings: &MaterialSettings) -> Material {
 }
 
 /// What a light of the scene file becomes.
-pub(super) enum Built {
+pub(super) enum LightOrSurface {
     /// A light that no ray meets.
     Light(Light),
     /// An emitting surface: it is seen and hides what is behind it.
@@ -61,19 +61,21 @@ pub(super) enum Built {
 }
 
 /// A light of the scene file.
-pub(super) fn light(settings: &LightSettings) -> Built {
+pub(super) fn light(settings: &LightSettings) -> LightOrSurface {
     let brightness = settings.intensity.rgb();
     let center = Vec3A::from_array(settings.center());
     let position = Vec3A::from_array(settings.position());
     match settings.kind {
-        LightKind::Sun => Built::Light(Light::Sun(Sun::new(
+        LightKind::Sun => LightOrSurface::Light(Light::Sun(Sun::new(
             Vec3A::from_array(settings.direction()),
             brightness,
             settings.angle(),
             settings.visible,
         ))),
-        LightKind::Point => Built::Light(Light::Point(Point { position, intensity: brightness })),
-        LightKind::Spot => Built::Light(Light::Spot(Spot::new(
+        LightKind::Point => {
+            LightOrSurface::Light(Light::Point(Point { position, intensity: brightness }))
+        }
+        LightKind::Spot => LightOrSurface::Light(Light::Spot(Spot::new(
             position,
             Vec3A::from_array(settings.target()),
             brightness,
@@ -92,10 +94,10 @@ pub(super) fn light(settings: &LightSettings) -> Built {
     }
 }
 
-fn emitter(shape: Shape, radiance: Rgb, visible: bool) -> Built {
+fn emitter(shape: Shape, radiance: Rgb, visible: bool) -> LightOrSurface {
     if visible {
-        Built::Surface(Surface { shape, material: Material::Black, emission: radiance })
+        LightOrSurface::Surface(Surface { shape, material: Material::Black, emission: radiance })
     } else {
-        Built::Light(Light::Invisible { shape, radiance })
+        LightOrSurface::Light(Light::Invisible { shape, radiance })
     }
 }

@@ -6,7 +6,7 @@ use glam::{DAffine3, Vec3A};
 
 use super::{
     placement::world_from_file,
-    source::{GridSource, ShapeSource, Source},
+    source::{GridSource, ShapeSource, VolumeSource},
 };
 use crate::error::{Error, Progress, Result};
 use crate::math::Rgb;
@@ -16,7 +16,7 @@ use crate::scene::settings::{Albedo, EmissionMode, Extent, Normalize, VolumeSett
 use crate::volume::emission::{Blackbody, ColorRamp, Emission};
 use crate::volume::field::{RgbField, ScalarField};
 use crate::volume::world::Instance;
-use crate::volume::{Region, Substance, Volume};
+use crate::volume::{MediumProperties, Region, Volume};
 
 /// Edge of the cells that bound a file's grids, in voxels.
 const CELL_VOXELS: f32 = 4.0;
@@ -93,27 +93,31 @@ fn from_file(
     key: &str,
     progress: Progress,
 ) -> Result<(Volume, DAffine3)> {
-    let mut source = Source::Grids(GridSource::new(file, progress));
-    let substance = substance(&mut source, settings, key)?;
-    let Source::Grids(grids) = source else {
+    let mut source = VolumeSource::Grids(GridSource::new(file, progress));
+    let properties = properties(&mut source, settings, key)?;
+    let VolumeSource::Grids(grids) = source else {
         return Err(Error::invalid(file.name(), key, "the file has no grids"));
     };
     let cell_size = Vec3A::splat(CELL_VOXELS);
-    let volume = Volume::varying(grids.bounds(), substance, cell_size, grids.voxel());
+    let volume = Volume::varying(grids.bounds(), properties, cell_size, grids.voxel());
     Ok((volume, grids.file_from_local()))
 }
 
 fn from_shape(shape: ShapeSource, settings: &VolumeSettings, key: &str) -> Result<Volume> {
     let (region, cell_size) = (shape.region, shape.cell_size);
     let is_constant = matches!(shape.field, ScalarField::Constant(_));
-    let substance = substance(&mut Source::Shape(shape), settings, key)?;
+    let properties = properties(&mut VolumeSource::Shape(shape), settings, key)?;
     Ok(match region {
-        Region::Box(bounds) if !is_constant => Volume::varying(bounds, substance, cell_size, None),
-        region => Volume::uniform(region, substance),
+        Region::Box(bounds) if !is_constant => Volume::varying(bounds, properties, cell_size, None),
+        region => Volume::uniform(region, properties),
     })
 }
 
-fn substance(source: &mut Source, settings: &VolumeSettings, key: &str) -> Result<Substance> {
+fn properties(
+    source: &mut VolumeSource,
+    settings: &VolumeSettings,
+    key: &str,
+) -> Result<MediumProperties> {
     // Without density the grid is read only where something else needs it: the glow, or the borders.
     let needs_density = !settings.density.scale.is_black()
         || settings.emission.times_density()
@@ -130,10 +134,10 @@ fn substance(source: &mut Source, settings: &VolumeSettings, key: &str) -> Resul
     };
     let emission = emission(source, settings, &format!("{key}.emission.grid"))?;
     let density_scale = settings.density.scale.rgb();
-    Ok(Substance { density, density_scale, albedo, g: settings.phase.g, emission })
+    Ok(MediumProperties { density, density_scale, albedo, g: settings.phase.g, emission })
 }
 
-fn emission(source: &mut Source, settings: &VolumeSettings, key: &str) -> Result<Emission> {
+fn emission(source: &mut VolumeSource, settings: &VolumeSettings, key: &str) -> Result<Emission> {
     let emission = &settings.emission;
     // Of the modes that read a grid; the others leave it alone.
     let grid = settings.emission_grid().unwrap_or_default();

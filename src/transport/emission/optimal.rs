@@ -6,7 +6,7 @@
 //! where little gets through. The walk's own weight stands for T̂, and m̂ is a glance ahead. Since
 //! such a majorant depends on the walk's history, it is for the emission's own walk only.
 
-use super::{Errand, Glow, by_rate, least_rate};
+use super::{RayEmission, RayKind, by_rate, least_rate};
 use crate::transport::tracking::EMISSION_FLOOR;
 use crate::{
     math::{PathRng, Rgb},
@@ -21,15 +21,15 @@ const FILL: f32 = 0.5;
 pub(in crate::transport) fn gather(
     medium: MediumRay,
     looks: f32,
-    errand: Errand,
+    ray_kind: RayKind,
     rng: &mut PathRng,
-) -> Glow {
+) -> RayEmission {
     // A glance ahead costs more than it brings where the direction is noisier anyway.
-    let ahead = match errand {
-        Errand::Camera if looks > EMISSION_FLOOR => glow_ahead(medium.clone()),
+    let ahead = match ray_kind {
+        RayKind::Camera if looks > EMISSION_FLOOR => glow_ahead(medium.clone()),
         _ => 0.0,
     };
-    let mut majorant = OptimalMajorant { looks: errand.share(looks), ahead };
+    let mut majorant = OptimalMajorant { looks: ray_kind.share(looks), ahead };
     by_rate(medium, |segment, weight| majorant.rate(segment, weight), rng)
 }
 

@@ -7,7 +7,7 @@
 
 use std::ops::ControlFlow;
 
-use super::{Errand, Glow, attenuated};
+use super::{RayEmission, RayKind, attenuated};
 use crate::transport::tracking::{EMISSION_FLOOR, MOST_COLLISIONS};
 use crate::transport::transmittance::{Comb, Transmittance};
 use crate::{
@@ -22,7 +22,7 @@ const CAMERA_READS: f32 = 6.0;
 const OTHER_READS: f32 = 1.0;
 
 /// How closely a walk looks, and the numbers its places are jittered by.
-struct Effort {
+struct StratifiedSampling {
     /// Looks at the emission along the brightest chord.
     looks: f32,
     /// Places where a comb reads μ_t, for each unit of the majorants' optical distance.
@@ -31,18 +31,18 @@ struct Effort {
     comb_jitters: [Slot; 2],
 }
 
-impl Effort {
-    fn new(boost: f32, errand: Errand) -> Self {
-        let looks = errand.share(boost);
-        let reads = match errand {
-            Errand::Camera => CAMERA_READS,
-            Errand::Scattered | Errand::Light => OTHER_READS,
+impl StratifiedSampling {
+    fn new(boost: f32, ray_kind: RayKind) -> Self {
+        let looks = ray_kind.share(boost);
+        let reads = match ray_kind {
+            RayKind::Camera => CAMERA_READS,
+            RayKind::Scattered | RayKind::Light => OTHER_READS,
         };
-        let (jitter, comb_jitters) = match errand {
-            Errand::Camera | Errand::Scattered => {
+        let (jitter, comb_jitters) = match ray_kind {
+            RayKind::Camera | RayKind::Scattered => {
                 (Slot::Emission, [Slot::TransmittanceA, Slot::TransmittanceB])
             }
-            Errand::Light => {
+            RayKind::Light => {
                 (Slot::LightEmission, [Slot::LightTransmittanceA, Slot::LightTransmittanceB])
             }
         };
@@ -55,13 +55,13 @@ impl Effort {
 pub(in crate::transport) fn gather(
     mut medium: MediumRay,
     boost: f32,
-    errand: Errand,
+    ray_kind: RayKind,
     rng: &mut PathRng,
-) -> Glow {
+) -> RayEmission {
     let Some(mut segment) = medium.next_segment() else {
-        return Glow { emission: Rgb::ZERO, transmittance: Rgb::ONE, collisions: 0 };
+        return RayEmission { emission: Rgb::ZERO, transmittance: Rgb::ONE, collisions: 0 };
     };
-    let mut walk = Stratified::new(&Effort::new(boost, errand), rng);
+    let mut walk = Stratified::new(&StratifiedSampling::new(boost, ray_kind), rng);
     loop {
         let crossed = if segment.uniform {
             walk.cross_uniform(&medium, &segment, rng)
@@ -76,7 +76,7 @@ pub(in crate::transport) fn gather(
     }
     // A walk that is cut may have read a few places more.
     let collisions = walk.read().min(MOST_COLLISIONS);
-    Glow { emission: walk.emission, transmittance: walk.way.estimate(), collisions }
+    RayEmission { emission: walk.emission, transmittance: walk.way.estimate(), collisions }
 }
 
 struct Stratified {
@@ -88,7 +88,7 @@ struct Stratified {
 }
 
 impl Stratified {
-    fn new(effort: &Effort, rng: &mut PathRng) -> Self {
+    fn new(effort: &StratifiedSampling, rng: &mut PathRng) -> Self {
         let looks = Comb::new(rng.at(effort.jitter));
         let jitters = effort.comb_jitters.map(|slot| rng.at(slot));
         Self {
@@ -151,8 +151,8 @@ impl Stratified {
     ) -> ControlFlow<()> {
         let c = medium.coefficients(segment.t0);
         if c.emission != Rgb::ZERO {
-            let glow = attenuated(c.emission, c.mu_t, segment.t1 - segment.t0);
-            self.emission += self.way.estimate() * glow;
+            let gathered = attenuated(c.emission, c.mu_t, segment.t1 - segment.t0);
+            self.emission += self.way.estimate() * gathered;
         }
         self.way.cross_uniform(c.mu_t, segment, rng)
     }

@@ -2,7 +2,7 @@
 //! and whenever it is learned.
 
 use crate::transport::PathSample;
-use crate::transport::observer::{Observer, Step};
+use crate::transport::observer::{Observer, PathStep};
 
 /// What a ray or a vertex costs beside the steps, in tracking steps. Measured on the scenes of the
 /// noise benchmark: good to a factor of two, and between two strategies on one scene to a quarter.
@@ -10,20 +10,20 @@ const RAY_COST: f64 = 11.0;
 
 /// Counts what a path does beside its tracking steps.
 #[derive(Debug, Default)]
-pub(in crate::transport) struct Effort {
+pub(in crate::transport) struct Cost {
     rays_and_vertices: u32,
 }
 
-impl Effort {
+impl Cost {
     /// Cost of the path that brought `sample`, in tracking steps.
     pub(in crate::transport) fn of(&self, sample: &PathSample) -> f64 {
         f64::from(sample.tracking_steps) + RAY_COST * f64::from(self.rays_and_vertices)
     }
 }
 
-impl Observer for Effort {
-    fn step(&mut self, step: Step) {
-        if matches!(step, Step::Ray { .. } | Step::Vertex { .. }) {
+impl Observer for Cost {
+    fn step(&mut self, step: PathStep) {
+        if matches!(step, PathStep::Ray { .. } | PathStep::Vertex { .. }) {
             self.rays_and_vertices += 1;
         }
     }

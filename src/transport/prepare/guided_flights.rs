@@ -10,10 +10,10 @@
 
 use glam::UVec2;
 
-use super::cost::Effort;
-use super::site::{Site, half_square};
+use super::cost::Cost;
+use super::pilot_pixel::{PilotPixel, half_square};
 use crate::math::luminance;
-use crate::transport::path::Aids;
+use crate::transport::path::PathContext;
 use crate::transport::scene::Scene;
 
 /// The shares that are tried, relative to the flights that the probes propose.
@@ -23,41 +23,41 @@ pub(in crate::transport) const FIRST: f32 = 0.25;
 /// What is spent on each share, in tracking steps of one of two paths at each pixel.
 const BUDGET: f64 = 131_072.0;
 /// Most pixels that a share is tried on.
-const MOST_SITES: u32 = 1 << 14;
+const MOST_PILOT_PIXELS: u32 = 1 << 14;
 /// What it costs to ask the probes along a ray, in tracking steps. Measured as the rest is.
 const GUIDE_COST: f64 = 26.0;
 /// By how much guided flights have to be better than none, which the pilot knows to a fifth.
 const MARGIN: f64 = 0.8;
 
-/// The share that lowers variance times cost most for `scene` on a film of `size`; `aids` are those
+/// The share that lowers variance times cost most for `scene` on a film of `size`; `context` are those
 /// of a share.
 pub(in crate::transport) fn flights<'s>(
     scene: &Scene,
     size: UVec2,
-    aids: impl Fn(f32) -> Aids<'s> + Sync,
+    context: impl Fn(f32) -> PathContext<'s> + Sync,
 ) -> f32 {
     if size.min_element() == 0 {
         return FIRST;
     }
-    let mut trials = [Trial::default(); TRIED.len()];
+    let mut trials = [ShareTrial::default(); TRIED.len()];
     // Threads of their own: a worker that waits here for others might take up a sample meanwhile
     // that waits for this.
     std::thread::scope(|scope| {
         for (trial, share) in trials.iter_mut().zip(TRIED) {
-            let aids = aids(share);
-            let work = move || *trial = Trial::new(scene, size, aids);
+            let context = context(share);
+            let work = move || *trial = ShareTrial::new(scene, size, context);
             // Where the system refuses a thread, this one does the work below.
             let _ = std::thread::Builder::new().name("pilot".to_owned()).spawn_scoped(scope, work);
         }
     });
     for (trial, share) in trials.iter_mut().zip(TRIED).filter(|(trial, _)| trial.cost == 0.0) {
-        *trial = Trial::new(scene, size, aids(share));
+        *trial = ShareTrial::new(scene, size, context(share));
     }
     best(&trials)
 }
 
 /// The share with the least variance times cost, if it is clearly better than none.
-fn best(trials: &[Trial; TRIED.len()]) -> f32 {
+fn best(trials: &[ShareTrial; TRIED.len()]) -> f32 {
     // Of a fire that hardly scatters it is most of the noise, and no share lowers it.
     let emission = trials.iter().map(|trial| trial.emission).sum::<f64>() / trials.len() as f64;
     let (mut least, mut best) = (f64::INFINITY, FIRST);
@@ -73,7 +73,7 @@ fn best(trials: &[Trial; TRIED.len()]) -> f32 {
 
 /// What a share brought.
 #[derive(Clone, Copy, Debug, Default)]
-struct Trial {
+struct ShareTrial {
     /// Mean over the pixels of the variance of the light that is scattered or reflected to them.
     scattered: f64,
     /// The same of the emission that is seen directly.
@@ -82,26 +82,31 @@ struct Trial {
     cost: f64,
 }
 
-impl Trial {
-    fn new(scene: &Scene, size: UVec2, aids: Aids<'_>) -> Self {
-        let (mut trial, mut sites) = (Self::default(), 0);
-        while trial.cost < BUDGET && sites < MOST_SITES {
-            let site = Site::new(scene, size, sites);
-            let guides = if aids.flights > 0.0 && site.meets_medium() { GUIDE_COST } else { 0.0 };
+impl ShareTrial {
+    fn new(scene: &Scene, size: UVec2, context: PathContext<'_>) -> Self {
+        let (mut trial, mut pilot_pixels) = (Self::default(), 0);
+        while trial.cost < BUDGET && pilot_pixels < MOST_PILOT_PIXELS {
+            let pilot_pixel = PilotPixel::new(scene, size, pilot_pixels);
+            let guides =
+                if context.flights > 0.0 && pilot_pixel.meets_medium() { GUIDE_COST } else { 0.0 };
             let [a, b] = [0, 1].map(|number| {
-                let mut effort = Effort::default();
-                let sample = site.path(aids, 0, number, &mut effort);
-                trial.cost += 0.5 * (effort.of(&sample) + guides);
+                let mut cost = Cost::default();
+                let sample = pilot_pixel.path(context, 0, number, &mut cost);
+                trial.cost += 0.5 * (cost.of(&sample) + guides);
                 [sample.direct + sample.indirect, sample.emission]
                     .map(|light| f64::from(luminance(light)))
             });
             trial.scattered += half_square(a[0] - b[0]);
             trial.emission += half_square(a[1] - b[1]);
-            sites += 1;
+            pilot_pixels += 1;
         }
-        let sites = f64::from(sites);
+        let pilot_pixels = f64::from(pilot_pixels);
         let Self { scattered, emission, cost } = trial;
-        Self { scattered: scattered / sites, emission: emission / sites, cost: cost / sites }
+        Self {
+            scattered: scattered / pilot_pixels,
+            emission: emission / pilot_pixels,
+            cost: cost / pilot_pixels,
+        }
     }
 }
 
@@ -164,7 +169,7 @@ mod tests {
     /// Each share is found best where it is.
     #[test]
     fn the_least_variance_times_cost_is_best() {
-        let trial = |scattered, cost| Trial { scattered, emission: 1.0, cost };
+        let trial = |scattered, cost| ShareTrial { scattered, emission: 1.0, cost };
         for (variances, costs, share) in [
             ([1.0, 1.0, 1.0, 1.0], [1.0, 2.0, 3.0, 4.0], 0.0),
             ([9.0, 1.0, 0.9, 0.8], [1.0, 2.0, 3.0, 4.0], 0.06),

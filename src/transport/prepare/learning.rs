@@ -11,10 +11,10 @@ use std::f32::consts::{PI, TAU};
 use glam::{UVec2, Vec3A};
 use rayon::prelude::*;
 
-use super::cost::Effort;
-use crate::transport::emission::Gatherer;
+use super::cost::Cost;
+use crate::transport::emission::EmissionEstimator;
 use crate::transport::path;
-use crate::transport::path::Aids;
+use crate::transport::path::PathContext;
 use crate::transport::probes::{Brightness, Indirect, Probes, SEED};
 use crate::transport::scene::Scene;
 use crate::transport::strategy::{Advanced, Preset, Strategy};
@@ -26,7 +26,7 @@ use crate::{
 /// Most paths from each probe.
 const PATHS: u32 = 16;
 /// Cost of a probe's paths, in tracking steps, after which no other sets out.
-const EFFORT: f64 = 1536.0;
+const COST_BUDGET: f64 = 1536.0;
 /// Turns after which they end: later ones bring little that would move a probe.
 const MOST_TURNS: u32 = 64;
 /// Steps of two numbers that fill the unit square evenly, however many there are (Roberts 2018).
@@ -70,32 +70,37 @@ fn learned(
     };
     let strategy = Strategy { advanced, ..Preset::Full.strategy() };
     let scene = Scene { max_scatters: turns, strategy, ..scene.clone() };
-    let gatherer = Gatherer::at_a_glance();
+    let emission_estimator = EmissionEstimator::at_a_glance();
     let brightness = Brightness::default();
-    let aids = Aids { gatherer: &gatherer, probes: Some(probes), brightness, flights: 1.0 };
+    let context = PathContext {
+        emission_estimator: &emission_estimator,
+        probes: Some(probes),
+        brightness,
+        flights: 1.0,
+    };
     let learn = |(node, bounds): &(u32, Aabb)| {
-        (!stop()).then(|| (*node, around(&scene, aids, *node, bounds)))
+        (!stop()).then(|| (*node, around(&scene, context, *node, bounds)))
     };
     probes.leaves().par_iter().map(learn).collect()
 }
 
 /// The light that arrives indirectly in a leaf.
-fn around(scene: &Scene, aids: Aids<'_>, node: u32, bounds: &Aabb) -> Indirect {
+fn around(scene: &Scene, context: PathContext<'_>, node: u32, bounds: &Aabb) -> Indirect {
     let mut indirect = Indirect::default();
     let mut rng = PathRng::new(SEED, UVec2::new(node, 2), PATHS);
     let begin = [rng.uniform(), rng.uniform()];
     let (mut paths, mut spent) = (0, 0.0);
-    while paths < PATHS && spent < EFFORT {
+    while paths < PATHS && spent < COST_BUDGET {
         let mut rng = PathRng::new(SEED, UVec2::new(node, 2), paths);
         let u = Vec3A::new(rng.uniform(), rng.uniform(), rng.uniform());
         let even = |k: usize| (begin[k] + paths as f32 * EVEN_STEPS[k]).fract();
         let direction = spherical(1.0 - 2.0 * even(0), TAU * even(1));
         let ray = Ray::new(bounds.min + u * bounds.size(), direction);
-        let mut effort = Effort::default();
-        let sample = path::trace(scene, aids, ray, &mut rng, &mut effort);
+        let mut cost = Cost::default();
+        let sample = path::trace(scene, context, ray, &mut rng, &mut cost);
         indirect.add(direction, 4.0 * PI * luminance(sample.direct + sample.indirect));
         paths += 1;
-        spent += effort.of(&sample);
+        spent += cost.of(&sample);
     }
     indirect.scaled(1.0 / paths.max(1) as f32)
 }

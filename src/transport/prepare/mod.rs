@@ -4,4 +4,4 @@ pub(super) mod cost;
 pub(super) mod guided_flights;
 pub(super) mod learning;
 pub(super) mod optimal_majorant;
-pub(super) mod site;
+pub(super) mod pilot_pixel;

@@ -7,16 +7,16 @@
 
 use glam::UVec2;
 
-use super::site::{Site, half_square};
+use super::pilot_pixel::{PilotPixel, half_square};
 use crate::math::luminance;
-use crate::transport::emission::{Errand, Gatherer};
+use crate::transport::emission::{EmissionEstimator, RayKind};
 use crate::transport::observer::Nobody;
-use crate::transport::path::Aids;
+use crate::transport::path::PathContext;
 use crate::transport::probes::Brightness;
 use crate::transport::scene::Scene;
 
 /// Pixels with something that glows in them that are measured at most.
-const MOST_SITES: u32 = 192;
+const MOST_PILOT_PIXELS: u32 = 192;
 /// Pixels that are searched for it at most.
 const MOST_SEARCHED: u32 = 4096;
 /// Steps after which the measurement makes do with what it has; a segment searched counts as one.
@@ -42,7 +42,7 @@ pub(in crate::transport) fn looks(scene: &Scene, size: UVec2) -> f32 {
 #[derive(Clone, Copy, Debug, Default)]
 struct Measured {
     searched: u32,
-    sites: u32,
+    pilot_pixels: u32,
     /// Variance of the walk along one ray at each of [`TRIED`].
     walk_variance: [f64; 2],
     /// Its steps.
@@ -61,26 +61,29 @@ fn measure(scene: &Scene, size: UVec2) -> Measured {
     if !emits || size.min_element() == 0 {
         return sums;
     }
-    while sums.sites < MOST_SITES && sums.searched < MOST_SEARCHED && sums.spent < MOST_STEPS {
-        let site = Site::new(scene, size, sums.searched);
+    while sums.pilot_pixels < MOST_PILOT_PIXELS
+        && sums.searched < MOST_SEARCHED
+        && sums.spent < MOST_STEPS
+    {
+        let pilot_pixel = PilotPixel::new(scene, size, sums.searched);
         sums.searched += 1;
-        if site.glows(&mut sums.spent) {
-            sums.add(&site);
+        if pilot_pixel.emits(&mut sums.spent) {
+            sums.add(&pilot_pixel);
         }
     }
     sums
 }
 
 impl Measured {
-    fn add(&mut self, site: &Site) {
-        self.sites += 1;
+    fn add(&mut self, pilot_pixel: &PilotPixel) {
+        self.pilot_pixels += 1;
         for (i, &looks) in TRIED.iter().enumerate() {
-            let [a, b] = [0, 1].map(|walk| site.walk(looks, 2 * i as u32 + walk));
+            let [a, b] = [0, 1].map(|walk| pilot_pixel.walk(looks, 2 * i as u32 + walk));
             self.walk_variance[i] += half_square(a.0 - b.0);
             self.walk_steps[i] += 0.5 * (f64::from(a.1) + f64::from(b.1));
             self.spent = self.spent.saturating_add(a.1).saturating_add(b.1);
         }
-        let [a, b] = [0, 1].map(|path| site.looking(TRIED[1], path));
+        let [a, b] = [0, 1].map(|path| pilot_pixel.looking(TRIED[1], path));
         self.path_variance += half_square(a.0 - b.0);
         self.path_steps += 0.5 * (f64::from(a.1) + f64::from(b.1));
         self.spent = self.spent.saturating_add(a.1).saturating_add(b.1);
@@ -89,14 +92,14 @@ impl Measured {
     /// `None` where the looks made no measurable difference.
     fn optimum(&self) -> Option<f32> {
         let [few, many] = TRIED.map(f64::from);
-        let sites = f64::from(self.sites);
+        let pilot_pixels = f64::from(self.pilot_pixels);
         let per_look = (self.walk_steps[1] - self.walk_steps[0]) / (many - few);
         let unboosted = (self.walk_steps[0] - per_look * few).max(0.0);
         let others = self.path_steps - self.walk_steps[1];
         // The pixels that nothing glows in cost something as well.
         let cost = PATH_COST * f64::from(self.searched) + (others + unboosted).max(0.0);
         let drop = (self.walk_variance[0] - self.walk_variance[1]) / (1.0 / few - 1.0 / many);
-        if !(sites > 0.0 && per_look > 0.0 && drop > 0.0 && drop.is_finite()) {
+        if !(pilot_pixels > 0.0 && per_look > 0.0 && drop > 0.0 && drop.is_finite()) {
             return None;
         }
         let left = |variance: f64| (variance - drop / many).max(0.0);
@@ -107,9 +110,9 @@ impl Measured {
     }
 }
 
-impl Site<'_> {
+impl PilotPixel<'_> {
     /// Whether the first ray meets anything that may glow; adds the segments it took to know.
-    fn glows(&self, spent: &mut u32) -> bool {
+    fn emits(&self, spent: &mut u32) -> bool {
         let mut medium = self.scene.world.along(self.rays[0], self.end());
         while let Some(segment) = medium.next_segment() {
             *spent += 1;
@@ -124,20 +127,26 @@ impl Site<'_> {
     fn walk(&self, looks: f32, number: u32) -> (f64, u32) {
         let medium = self.scene.world.along(self.rays[0], self.end());
         let mut rng = self.rng(number);
-        let glow = Gatherer::optimal(looks).gather(medium, Errand::Camera, &mut rng);
-        (f64::from(luminance(glow.emission)), glow.collisions)
+        let gathered = EmissionEstimator::optimal(looks).gather(medium, RayKind::Camera, &mut rng);
+        (f64::from(luminance(gathered.emission)), gathered.collisions)
     }
 
     /// What a path along ray `number` brings, and its steps.
     fn looking(&self, looks: f32, number: u32) -> (f64, u32) {
-        let gatherer = Gatherer::optimal(looks);
-        let sample = self.path(unguided(&gatherer), number as usize, 7 + number, &mut Nobody);
+        let emission_estimator = EmissionEstimator::optimal(looks);
+        let sample =
+            self.path(unguided(&emission_estimator), number as usize, 7 + number, &mut Nobody);
         (f64::from(luminance(sample.beauty())), sample.tracking_steps)
     }
 }
 
-fn unguided(gatherer: &Gatherer) -> Aids<'_> {
-    Aids { gatherer, probes: None, brightness: Brightness::default(), flights: 0.0 }
+fn unguided(emission_estimator: &EmissionEstimator) -> PathContext<'_> {
+    PathContext {
+        emission_estimator,
+        probes: None,
+        brightness: Brightness::default(),
+        flights: 0.0,
+    }
 }
 
 #[cfg(test)]
@@ -180,8 +189,8 @@ mod tests {
     /// Variance of independent samples times their cost, over the whole film.
     fn variance_times_cost(scene: &Scene, looks: f32) -> f64 {
         const SAMPLES: u32 = 64;
-        let gatherer = Gatherer::optimal(looks);
-        let aids = unguided(&gatherer);
+        let emission_estimator = EmissionEstimator::optimal(looks);
+        let context = unguided(&emission_estimator);
         let (mut variance, mut steps) = (0.0, 0.0);
         for i in 0..SIZE.element_product() {
             let pixel = UVec2::new(i % SIZE.x, i / SIZE.x);
@@ -190,7 +199,7 @@ mod tests {
                 let mut rng = PathRng::new(0, pixel, sample);
                 let offset = Vec2::new(rng.uniform(), rng.uniform());
                 let ray = scene.camera.ray(SIZE, pixel, offset);
-                let sample = path::trace(scene, aids, ray, &mut rng, &mut Nobody);
+                let sample = path::trace(scene, context, ray, &mut rng, &mut Nobody);
                 let value = f64::from(luminance(sample.beauty()));
                 (sum, squares) = (sum + value, squares + value * value);
                 steps += f64::from(sample.tracking_steps);
@@ -240,7 +249,7 @@ mod tests {
     #[test]
     fn measuring_costs_milliseconds_at_most() {
         let measured = measure(&Scene::of_text(&format!("{CAMERA}{FIRE}{SMOKE}")), SIZE);
-        assert!(measured.sites > 50 && measured.spent < 2 * MOST_STEPS, "{measured:?}");
+        assert!(measured.pilot_pixels > 50 && measured.spent < 2 * MOST_STEPS, "{measured:?}");
 
         let dark = Scene::of_text(&format!("{CAMERA}{SMOKE}"));
         assert_eq!(measure(&dark, SIZE).searched, 0);
@@ -249,14 +258,14 @@ mod tests {
         let away = CAMERA.replace("[0, 0, 0]", "[0, -8, 0]");
         let unseen = Scene::of_text(&format!("{away}{FIRE}{SMOKE}"));
         let measured = measure(&unseen, SIZE);
-        assert!(measured.sites == 0 && measured.spent == 0, "{measured:?}");
+        assert!(measured.pilot_pixels == 0 && measured.spent == 0, "{measured:?}");
         assert_eq!(looks(&unseen, SIZE), UNMEASURED);
 
         // Smoke fills the view and hides nothing that glows.
         let beside = FIRE.replace("[[volume]]", "[[volume]]\ntranslate = [0, -9, 0]");
         let hidden = Scene::of_text(&format!("{CAMERA}{beside}{SMOKE}"));
         let measured = measure(&hidden, SIZE);
-        assert!(measured.sites == 0 && measured.spent < 2 * MOST_STEPS, "{measured:?}");
+        assert!(measured.pilot_pixels == 0 && measured.spent < 2 * MOST_STEPS, "{measured:?}");
     }
 
     /// What is measured of light that cannot be squared or that is next to nothing still gives a

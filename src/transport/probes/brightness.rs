@@ -6,7 +6,7 @@ use super::{Probes, SEED};
 use crate::{
     math::{PathRng, luminance},
     surface,
-    transport::{direct, emission::Gatherer, scene::Scene, vertex::Vertex},
+    transport::{direct, emission::EmissionEstimator, scene::Scene, vertex::Vertex},
 };
 
 /// Side of the grid of camera rays that are looked along.
@@ -53,14 +53,16 @@ fn light_along(probes: &Probes, scene: &Scene, size: UVec2, index: u32) -> [f32;
     let ray = scene.camera.ray(size, place.as_uvec2(), place.fract());
     let end = surface::intersect(&scene.surfaces, &ray);
     let t_max = end.as_ref().map_or(f32::INFINITY, |end| end.hit.t);
-    let line = probes.along(scene.world.along(ray, t_max), &ray);
-    let scattered = line.as_ref().map_or(0.0, |line| line.light());
+    let distance_pdf = probes.along(scene.world.along(ray, t_max), &ray);
+    let scattered = distance_pdf.as_ref().map_or(0.0, |distance_pdf| distance_pdf.light());
     let Some(vertex) = end.and_then(|end| Vertex::reflecting(&end, &ray)) else {
         return [scattered, 0.0];
     };
     let mut rng = PathRng::new(SEED, UVec2::new(index, 1), 0);
-    let (gatherer, choice) = (Gatherer::at_a_glance(), direct::choice(&scene.strategy));
-    let look = direct::sample_lights(scene, &gatherer, &vertex, &choice, &mut rng);
-    let reflected = luminance(look.light) * line.map_or(1.0, |line| line.transmittance());
+    let (emission_estimator, choice) =
+        (EmissionEstimator::at_a_glance(), direct::choice(&scene.strategy));
+    let look = direct::sample_lights(scene, &emission_estimator, &vertex, &choice, &mut rng);
+    let reflected = luminance(look.light)
+        * distance_pdf.map_or(1.0, |distance_pdf| distance_pdf.transmittance());
     [scattered, if reflected.is_finite() { reflected } else { 0.0 }]
 }

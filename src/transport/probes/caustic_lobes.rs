@@ -19,7 +19,7 @@ const NARROWEST: f32 = 1e-6;
 
 /// Part of a ray of light that a metal has thrown, in a leaf.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::transport) struct Beam {
+pub(in crate::transport) struct PhotonSegment {
     /// The leaf.
     pub(in crate::transport) leaf: u32,
     /// The metal and the light, by their indices in the scene.
@@ -36,7 +36,7 @@ pub(in crate::transport) struct Beam {
 
 /// A bundle of light in a leaf.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::transport) struct Focus {
+pub(in crate::transport) struct CausticLobe {
     /// Where its rays come from.
     pub(in crate::transport) point: Vec3A,
     /// Unit, on average towards there.
@@ -49,59 +49,60 @@ pub(in crate::transport) struct Focus {
 
 /// The bundles of all leaves; empty by default.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Foci {
-    all: Vec<Focus>,
+pub(super) struct CausticLobes {
+    all: Vec<CausticLobe>,
     /// Of each node the first in `all` and how many; empty where there is none at all.
     places: Vec<(u32, u32)>,
 }
 
-impl Foci {
-    /// Gathers `beams`, in any order, for an octree of so many `nodes`.
-    pub(super) fn new(mut beams: Vec<Beam>, nodes: usize) -> Self {
-        let mut foci = Self::default();
-        beams.sort_by_key(|beam| (beam.leaf, beam.origin));
-        for beams in beams.chunk_by(|a, b| a.leaf == b.leaf) {
-            let bundles = beams.chunk_by(|a, b| a.origin == b.origin);
-            let mut found: SmallVec<[Focus; MOST]> = bundles.filter_map(Focus::new).collect();
+impl CausticLobes {
+    /// Gathers `segments`, in any order, for an octree of so many `nodes`.
+    pub(super) fn new(mut segments: Vec<PhotonSegment>, nodes: usize) -> Self {
+        let mut caustic_lobes = Self::default();
+        segments.sort_by_key(|segment| (segment.leaf, segment.origin));
+        for segments in segments.chunk_by(|a, b| a.leaf == b.leaf) {
+            let bundles = segments.chunk_by(|a, b| a.origin == b.origin);
+            let mut found: SmallVec<[CausticLobe; MOST]> =
+                bundles.filter_map(CausticLobe::new).collect();
             found.sort_by(|a, b| b.fluence.total_cmp(&a.fluence));
             found.truncate(MOST);
             if found.is_empty() {
                 continue;
             }
-            foci.places.resize(nodes, (0, 0));
-            let place = (foci.all.len() as u32, found.len() as u32);
-            foci.places[beams[0].leaf as usize] = place;
-            foci.all.extend(found);
+            caustic_lobes.places.resize(nodes, (0, 0));
+            let place = (caustic_lobes.all.len() as u32, found.len() as u32);
+            caustic_lobes.places[segments[0].leaf as usize] = place;
+            caustic_lobes.all.extend(found);
         }
-        foci
+        caustic_lobes
     }
 
     /// Those of a leaf.
     #[inline]
-    pub(super) fn of(&self, leaf: u32) -> &[Focus] {
+    pub(super) fn of(&self, leaf: u32) -> &[CausticLobe] {
         let Some(&(first, count)) = self.places.get(leaf as usize) else { return &[] };
         &self.all[first as usize..(first + count) as usize]
     }
 }
 
-impl Focus {
+impl CausticLobe {
     /// Of the beams of one light off one metal in one leaf; `None` where they are too few.
-    fn new(beams: &[Beam]) -> Option<Self> {
-        let fluence: f32 = beams.iter().map(|beam| beam.fluence).sum();
-        if beams.len() < LEAST_RAYS || !(fluence > 0.0 && fluence.is_finite()) {
+    fn new(segments: &[PhotonSegment]) -> Option<Self> {
+        let fluence: f32 = segments.iter().map(|segment| segment.fluence).sum();
+        if segments.len() < LEAST_RAYS || !(fluence > 0.0 && fluence.is_finite()) {
             return None;
         }
-        let mean = |of: &dyn Fn(&Beam) -> Vec3A| {
-            beams.iter().map(|beam| beam.fluence / fluence * of(beam)).sum::<Vec3A>()
+        let mean = |of: &dyn Fn(&PhotonSegment) -> Vec3A| {
+            segments.iter().map(|segment| segment.fluence / fluence * of(segment)).sum::<Vec3A>()
         };
-        let direction = mean(&|beam| beam.direction).try_normalize()?;
-        let point = meeting(beams, fluence, mean(&|beam| beam.point))?;
-        let off = |beam: &Beam| {
-            let axis = (point - beam.point).normalize_or_zero();
-            beam.fluence / fluence * 0.5 * (beam.direction - axis).length_squared()
+        let direction = mean(&|segment| segment.direction).try_normalize()?;
+        let point = meeting(segments, fluence, mean(&|segment| segment.point))?;
+        let off = |segment: &PhotonSegment| {
+            let axis = (point - segment.point).normalize_or_zero();
+            segment.fluence / fluence * 0.5 * (segment.direction - axis).length_squared()
         };
-        let spread: f32 = beams.iter().map(off).sum();
-        let rays = beams.len() as f32;
+        let spread: f32 = segments.iter().map(off).sum();
+        let rays = segments.len() as f32;
         let spread = (rays * spread + PRIOR.1 * PRIOR.0) / (rays + PRIOR.1);
         let concentration = 1.0 / spread.max(NARROWEST);
         Some(Self { point, direction, concentration, fluence })
@@ -116,14 +117,14 @@ impl Focus {
 
 /// The point that the lines of the beams come nearest to, in the mean of squares, and with little
 /// weight their images, which say how far away it is where the lines are parallel.
-fn meeting(beams: &[Beam], fluence: f32, center: Vec3A) -> Option<Vec3A> {
+fn meeting(segments: &[PhotonSegment], fluence: f32, center: Vec3A) -> Option<Vec3A> {
     let (mut matrix, mut right) = (Mat3A::ZERO, Vec3A::ZERO);
-    for beam in beams {
-        let weight = beam.fluence / fluence;
-        let d = beam.direction;
+    for segment in segments {
+        let weight = segment.fluence / fluence;
+        let d = segment.direction;
         let across = Mat3A::IDENTITY - Mat3A::from_cols(d.x * d, d.y * d, d.z * d);
         matrix += weight * (across + TRUST * Mat3A::IDENTITY);
-        right += weight * (across * (beam.point - center) + TRUST * (beam.image - center));
+        right += weight * (across * (segment.point - center) + TRUST * (segment.image - center));
     }
     let point = center + matrix.inverse() * right;
     point.is_finite().then_some(point)
@@ -134,13 +135,13 @@ mod tests {
     use super::*;
 
     /// Rays that come from a point, seen in a leaf of half size 0.1 about the origin.
-    fn beams(from: Vec3A, image: Vec3A) -> Vec<Beam> {
+    fn segments(from: Vec3A, image: Vec3A) -> Vec<PhotonSegment> {
         let at = |i: usize| 0.1 * Vec3A::from([0.7, 0.3, 0.9].map(|s| (s * i as f32).sin()));
-        let beam = |i| {
+        let segment = |i| {
             let direction = (from - at(i)).normalize();
-            Beam { leaf: 8, origin: (0, 0), fluence: 0.5, point: at(i), direction, image }
+            PhotonSegment { leaf: 8, origin: (0, 0), fluence: 0.5, point: at(i), direction, image }
         };
-        (0..32).map(beam).collect()
+        (0..32).map(segment).collect()
     }
 
     #[test]
@@ -151,31 +152,31 @@ mod tests {
         let sun = 1e4 * Vec3A::new(0.6, 0.0, 0.8);
         for (from, image, error) in [(near, near, 1e-4), (near, 3.0 * near, 0.05), (sun, sun, 10.0)]
         {
-            let foci = Foci::new(beams(from, image), 9);
-            let [focus] = foci.of(8) else { panic!("one bundle: {foci:?}") };
-            let off = (focus.point - from).length();
-            assert!(off < error, "{from}: {} is off by {off}", focus.point);
-            assert!((focus.fluence - 16.0).abs() < 1e-4 && focus.concentration > 1e3, "{focus:?}");
-            assert!(foci.of(7).is_empty());
+            let caustic_lobes = CausticLobes::new(segments(from, image), 9);
+            let [lobe] = caustic_lobes.of(8) else { panic!("one bundle: {caustic_lobes:?}") };
+            let off = (lobe.point - from).length();
+            assert!(off < error, "{from}: {} is off by {off}", lobe.point);
+            assert!((lobe.fluence - 16.0).abs() < 1e-4 && lobe.concentration > 1e3, "{lobe:?}");
+            assert!(caustic_lobes.of(7).is_empty());
         }
     }
 
     #[test]
     fn few_rays_and_faint_bundles_are_left_out() {
         let near = Vec3A::X;
-        assert!(Foci::new(beams(near, near)[..2].to_vec(), 9).of(8).is_empty());
-        let many: Vec<Beam> = (0..6)
+        assert!(CausticLobes::new(segments(near, near)[..2].to_vec(), 9).of(8).is_empty());
+        let many: Vec<PhotonSegment> = (0..6)
             .flat_map(|light| {
-                let with = move |beam: Beam| Beam {
+                let with = move |segment: PhotonSegment| PhotonSegment {
                     origin: (0, light),
                     fluence: light as f32 + 1.0,
-                    ..beam
+                    ..segment
                 };
-                beams(near, near).into_iter().map(with)
+                segments(near, near).into_iter().map(with)
             })
             .collect();
-        let foci = Foci::new(many, 9);
-        let kept: Vec<f32> = foci.of(8).iter().map(|focus| focus.fluence / 32.0).collect();
+        let caustic_lobes = CausticLobes::new(many, 9);
+        let kept: Vec<f32> = caustic_lobes.of(8).iter().map(|lobe| lobe.fluence / 32.0).collect();
         assert_eq!(kept, [6.0, 5.0, 4.0, 3.0]);
     }
 }

@@ -10,14 +10,14 @@
 use glam::{UVec2, Vec2, Vec3A};
 use rayon::prelude::*;
 
-use super::{Beam, Probes, SEED};
+use super::{PhotonSegment, Probes, SEED};
 use crate::transport::direct;
-use crate::transport::emission::Gatherer;
+use crate::transport::emission::EmissionEstimator;
 use crate::transport::scene::Scene;
 use crate::transport::vertex::Vertex;
 use crate::{
     light::Receiver,
-    math::{Frame, PathRng, Ray, luminance},
+    math::{OrthonormalBasis, PathRng, Ray, luminance},
     sampling::warp::uniform_disk,
     surface::{self, Bsdf, Hit, Material, Shape},
 };
@@ -46,16 +46,22 @@ impl Probes {
         for (leaf, bounds) in self.leaves() {
             volumes[leaf as usize] = bounds.size().element_product();
         }
-        let caster = Caster { scene, gatherer: Gatherer::at_a_glance(), probes: self, volumes };
+        let tracer = PhotonTracer {
+            scene,
+            emission_estimator: EmissionEstimator::at_a_glance(),
+            probes: self,
+            volumes,
+        };
         let cast = |i: u32| {
             let metal = metals[i as usize % metals.len()];
-            (!stop()).then(|| caster.cast(metal, i).unwrap_or_default())
+            (!stop()).then(|| tracer.cast(metal, i).unwrap_or_default())
         };
         let share = metals.len() as f32 / RAYS as f32;
-        let beams: Option<Vec<Vec<Beam>>> = (0..RAYS).into_par_iter().map(cast).collect();
-        let mut beams = beams?.concat();
-        beams.iter_mut().for_each(|beam| beam.fluence *= share);
-        self.take_beams(beams);
+        let segments: Option<Vec<Vec<PhotonSegment>>> =
+            (0..RAYS).into_par_iter().map(cast).collect();
+        let mut segments = segments?.concat();
+        segments.iter_mut().for_each(|segment| segment.fluence *= share);
+        self.take_photon_segments(segments);
         Some(())
     }
 }
@@ -73,16 +79,16 @@ fn gathers(material: Material) -> bool {
 }
 
 /// Throws rays.
-struct Caster<'s> {
+struct PhotonTracer<'s> {
     scene: &'s Scene,
-    gatherer: Gatherer,
+    emission_estimator: EmissionEstimator,
     probes: &'s Probes,
     /// Of the leaves, by node.
     volumes: Vec<f32>,
 }
 
 /// Light on its way from a metal.
-struct Thrown {
+struct Photon {
     /// The metal and the light.
     origin: (u32, u32),
     ray: Ray,
@@ -91,37 +97,37 @@ struct Thrown {
     way: f32,
 }
 
-impl Caster<'_> {
+impl PhotonTracer<'_> {
     /// What ray number `index` brings to the leaves, if it is lit.
-    fn cast(&self, metal: u32, index: u32) -> Option<Vec<Beam>> {
+    fn cast(&self, metal: u32, index: u32) -> Option<Vec<PhotonSegment>> {
         let mut rng = PathRng::new(SEED, UVec2::new(index, 3), 0);
-        let mut thrown = self.lit(metal, &mut rng)?;
-        let mut beams = Vec::new();
+        let mut photon = self.lit(metal, &mut rng)?;
+        let mut segments = Vec::new();
         for _ in 0..MOST_METALS {
-            let end = surface::intersect(&self.scene.surfaces, &thrown.ray);
+            let end = surface::intersect(&self.scene.surfaces, &photon.ray);
             let t_max = end.as_ref().map_or(f32::INFINITY, |end| end.hit.t);
-            let transmittance = self.deposit(&thrown, t_max, &mut beams);
+            let transmittance = self.deposit(&photon, t_max, &mut segments);
             let Some(end) = end.filter(|end| gathers(end.surface.material)) else { break };
-            let Some(vertex) = Vertex::reflecting(&end, &thrown.ray) else { break };
+            let Some(vertex) = Vertex::reflecting(&end, &photon.ray) else { break };
             let Some(turn) = vertex.sample(&mut rng) else { break };
-            thrown = Thrown {
-                origin: (end.index as u32, thrown.origin.1),
+            photon = Photon {
+                origin: (end.index as u32, photon.origin.1),
                 ray: vertex.ray(turn.direction),
-                power: thrown.power * transmittance * luminance(turn.weight),
-                way: thrown.way + end.hit.t,
+                power: photon.power * transmittance * luminance(turn.weight),
+                way: photon.way + end.hit.t,
             };
         }
-        Some(beams)
+        Some(segments)
     }
 
     /// Light of one of the lights that a random point of a metal throws on.
-    fn lit(&self, metal: u32, rng: &mut PathRng) -> Option<Thrown> {
+    fn lit(&self, metal: u32, rng: &mut PathRng) -> Option<Photon> {
         let surface = &self.scene.surfaces[metal as usize];
         let (point, normal, area) = self.point_on(&surface.shape, rng)?;
         let side = if rng.uniform() < 0.5 { normal } else { -normal };
         let hit = Hit { t: 0.0, point, normal: side };
         let from = Receiver { position: point + hit.offset() * side, normal: Some(side) };
-        let look = direct::glance(self.scene, &self.gatherer, &from, rng)?;
+        let look = direct::estimate_light(self.scene, &self.emission_estimator, &from, rng)?;
         let cosine = side.dot(look.direction);
         if cosine <= 0.0 {
             return None;
@@ -131,7 +137,7 @@ impl Caster<'_> {
         let turn = vertex.sample(rng)?;
         // Either side was chosen with probability 1/2.
         let power = 2.0 * area * cosine * luminance(look.radiance * turn.weight);
-        Some(Thrown {
+        Some(Photon {
             origin: (metal, look.light),
             ray: vertex.ray(turn.direction),
             power,
@@ -146,7 +152,7 @@ impl Caster<'_> {
         if let Shape::Plane { point, normal } = shape {
             let (center, radius) = (self.probes.center(), self.probes.size());
             let foot = center - (center - *point).dot(*normal) * *normal;
-            let frame = Frame::around(*normal);
+            let frame = OrthonormalBasis::around(*normal);
             let place = radius * uniform_disk(u);
             let point = foot + place.x * frame.tangent + place.y * frame.bitangent;
             return Some((point, *normal, std::f32::consts::PI * radius * radius));
@@ -157,28 +163,28 @@ impl Caster<'_> {
 
     /// Adds what the ray brings to each leaf on its way; returns its transmittance, as the probes
     /// think.
-    fn deposit(&self, thrown: &Thrown, t_max: f32, beams: &mut Vec<Beam>) -> f32 {
-        let ray = &thrown.ray;
-        let image = ray.origin - thrown.way * ray.direction;
+    fn deposit(&self, photon: &Photon, t_max: f32, segments: &mut Vec<PhotonSegment>) -> f32 {
+        let ray = &photon.ray;
+        let image = ray.origin - photon.way * ray.direction;
         let medium = self.scene.world.along(*ray, t_max);
         let mut passed = 1.0;
-        self.probes.visit(medium, ray, |leaf, stretch| {
-            let (begin, mean_length) = (passed, stretch.absorbed());
-            passed *= stretch.transmittance();
+        self.probes.visit(medium, ray, |leaf, ray_piece| {
+            let (begin, mean_length) = (passed, ray_piece.absorbed());
+            passed *= ray_piece.transmittance();
             let Some(leaf) = leaf else { return passed };
-            let fluence = thrown.power * begin * mean_length / self.volumes[leaf as usize];
+            let fluence = photon.power * begin * mean_length / self.volumes[leaf as usize];
             if !(fluence > 0.0 && fluence.is_finite()) {
                 return passed;
             }
-            match beams.last_mut() {
-                Some(last) if last.leaf == leaf && last.origin == thrown.origin => {
+            match segments.last_mut() {
+                Some(last) if last.leaf == leaf && last.origin == photon.origin => {
                     last.fluence += fluence;
                 }
-                _ => beams.push(Beam {
+                _ => segments.push(PhotonSegment {
                     leaf,
-                    origin: thrown.origin,
+                    origin: photon.origin,
                     fluence,
-                    point: ray.at(stretch.middle()),
+                    point: ray.at(ray_piece.middle()),
                     direction: -ray.direction,
                     image,
                 }),

@@ -10,7 +10,7 @@ const SHARE_OF_MATTER: f32 = 0.1;
 
 /// A density over the parameter of a ray. The very same table draws and weighs.
 #[derive(Clone, Debug)]
-pub struct Line {
+pub struct DistancePdf {
     /// T of all of it, as the probes think.
     transmittance: f32,
     /// Radiance scattered into it, as they think.
@@ -35,7 +35,7 @@ struct Piece {
 
 /// What a stretch of a ray is thought to hold.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::transport) struct Stretch {
+pub(in crate::transport) struct RayPiece {
     /// Where it begins.
     pub(super) t0: f32,
     /// Where it ends; may be infinite.
@@ -48,7 +48,7 @@ pub(in crate::transport) struct Stretch {
     pub(super) scattered: f32,
 }
 
-impl Stretch {
+impl RayPiece {
     /// exp(−τ) of it.
     pub(in crate::transport) fn transmittance(&self) -> f32 {
         (-self.mu_t * (self.t1 - self.t0)).exp()
@@ -67,7 +67,7 @@ impl Stretch {
 
 /// Collects stretches from near to far.
 #[derive(Debug)]
-pub(super) struct LineBuilder {
+pub(super) struct DistancePdfBuilder {
     /// With the guess at their light in `share` and their matter in `before`.
     pieces: SmallVec<[Piece; MOST_PIECES]>,
     /// exp(−τ) of all before.
@@ -79,14 +79,14 @@ pub(super) struct LineBuilder {
     held: u32,
 }
 
-impl LineBuilder {
+impl DistancePdfBuilder {
     pub(super) fn new() -> Self {
         Self { pieces: SmallVec::new(), transmittance: 1.0, square: 0.0, stride: 1, held: 0 }
     }
 
     /// Adds what comes next.
-    pub(super) fn add(&mut self, stretch: &Stretch) {
-        let Stretch { t0, t1, mu_t, majorant, scattered } = *stretch;
+    pub(super) fn add(&mut self, ray_piece: &RayPiece) {
+        let RayPiece { t0, t1, mu_t, majorant, scattered } = *ray_piece;
         let depth = mu_t * (t1 - t0);
         let lost = -(-depth).exp_m1();
         let absorbed = if depth < FLAT { t1 - t0 } else { lost / mu_t };
@@ -128,7 +128,7 @@ impl LineBuilder {
     }
 
     /// The density; `None` where nothing scatters.
-    pub(super) fn finish(self) -> Option<Line> {
+    pub(super) fn finish(self) -> Option<DistancePdf> {
         let mut pieces = self.pieces;
         let light: f32 = pieces.iter().map(|piece| piece.share).sum();
         let matter: f32 = pieces.iter().map(|piece| piece.before).sum();
@@ -145,7 +145,7 @@ impl LineBuilder {
             before += piece.share;
         }
         let (light, spread) = if lit { (light, self.square / light / light) } else { (0.0, 1.0) };
-        Some(Line { transmittance: self.transmittance, light, spread, pieces })
+        Some(DistancePdf { transmittance: self.transmittance, light, spread, pieces })
     }
 }
 
@@ -155,7 +155,7 @@ fn joined(a: &Piece, b: &Piece) -> Piece {
     Piece { t0: a.t0, t1: b.t1, falloff: 0.0, share, before }
 }
 
-impl Line {
+impl DistancePdf {
     /// T of all of it, as the probes think.
     pub fn transmittance(&self) -> f32 {
         self.transmittance
@@ -172,7 +172,7 @@ impl Line {
         (self.spread - 1.0).max(0.0)
     }
 
-    /// A parameter with density [`Line::pdf`], from `u` in [0, 1).
+    /// A parameter with density [`DistancePdf::pdf`], from `u` in [0, 1).
     pub fn sample(&self, u: f32) -> f32 {
         let index = self.pieces.partition_point(|piece| piece.before <= u).max(1) - 1;
         let piece = &self.pieces[index];
@@ -213,24 +213,24 @@ fn mass(falloff: f32, length: f32) -> f32 {
 mod tests {
     use super::*;
 
-    fn line(stretches: &[Stretch]) -> Line {
-        let mut builder = LineBuilder::new();
-        stretches.iter().for_each(|stretch| builder.add(stretch));
+    fn line(stretches: &[RayPiece]) -> DistancePdf {
+        let mut builder = DistancePdfBuilder::new();
+        stretches.iter().for_each(|ray_piece| builder.add(ray_piece));
         builder.finish().unwrap()
     }
 
-    fn stretch(t0: f32, t1: f32, mu_t: f32, scattered: f32) -> Stretch {
-        Stretch { t0, t1, mu_t, majorant: 0.5 + mu_t, scattered }
+    fn ray_piece(t0: f32, t1: f32, mu_t: f32, scattered: f32) -> RayPiece {
+        RayPiece { t0, t1, mu_t, majorant: 0.5 + mu_t, scattered }
     }
 
     /// Bright and dark, thin and thick pieces, a gap, a tail without end.
-    fn mixed() -> Line {
+    fn mixed() -> DistancePdf {
         line(&[
-            stretch(1.0, 2.0, 0.0, 1.0),
-            stretch(2.0, 2.5, 3.0, 20.0),
-            stretch(4.0, 7.0, 1e-5, 0.0),
-            stretch(7.0, 8.0, 40.0, 5.0),
-            stretch(8.0, f32::INFINITY, 0.25, 0.1),
+            ray_piece(1.0, 2.0, 0.0, 1.0),
+            ray_piece(2.0, 2.5, 3.0, 20.0),
+            ray_piece(4.0, 7.0, 1e-5, 0.0),
+            ray_piece(7.0, 8.0, 40.0, 5.0),
+            ray_piece(8.0, f32::INFINITY, 0.25, 0.1),
         ])
     }
 
@@ -273,8 +273,8 @@ mod tests {
     /// However many stretches there are, the whole way is covered and the bright place stays so.
     #[test]
     fn many_stretches_are_joined() {
-        let all: Vec<Stretch> = (0..1000)
-            .map(|i| stretch(i as f32, i as f32 + 1.0, 1e-4, if i == 700 { 1e3 } else { 1.0 }))
+        let all: Vec<RayPiece> = (0..1000)
+            .map(|i| ray_piece(i as f32, i as f32 + 1.0, 1e-4, if i == 700 { 1e3 } else { 1.0 }))
             .collect();
         let line = line(&all);
         assert!(line.pieces.len() <= MOST_PIECES);
@@ -284,12 +284,12 @@ mod tests {
 
     #[test]
     fn what_cannot_be_measured_gives_no_line() {
-        assert!(LineBuilder::new().finish().is_none());
-        let mut builder = LineBuilder::new();
-        builder.add(&Stretch { majorant: f32::NAN, ..stretch(0.0, 1.0, 1.0, 1.0) });
-        builder.add(&Stretch { majorant: f32::INFINITY, ..stretch(0.0, 1.0, 1.0, 1.0) });
+        assert!(DistancePdfBuilder::new().finish().is_none());
+        let mut builder = DistancePdfBuilder::new();
+        builder.add(&RayPiece { majorant: f32::NAN, ..ray_piece(0.0, 1.0, 1.0, 1.0) });
+        builder.add(&RayPiece { majorant: f32::INFINITY, ..ray_piece(0.0, 1.0, 1.0, 1.0) });
         assert!(builder.finish().is_none());
-        let light = line(&[Stretch { scattered: f32::INFINITY, ..stretch(0.0, 2.0, 0.0, 1.0) }]);
+        let light = line(&[RayPiece { scattered: f32::INFINITY, ..ray_piece(0.0, 2.0, 0.0, 1.0) }]);
         assert_eq!(light.pdf(1.0), 0.5);
     }
 }

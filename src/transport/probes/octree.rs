@@ -20,7 +20,7 @@ pub(super) struct Octree {
 
 /// What a ray meets at a point.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
+pub(super) struct OctreePoint {
     /// The leaf, none outside of the cube.
     pub(super) leaf: Option<u32>,
     /// The ray parameter up to which the ray stays in it, or comes to the cube.
@@ -77,13 +77,13 @@ impl Octree {
     }
 
     /// The leaf of `ray` at parameter `t`, and where it leaves it.
-    pub(super) fn locate(&self, ray: &Ray, t: f32) -> Place {
+    pub(super) fn locate(&self, ray: &Ray, t: f32) -> OctreePoint {
         let Some((node, place, depth)) = self.find(ray.at(t)) else {
-            return Place { leaf: None, t_end: self.entry(ray, t) };
+            return OctreePoint { leaf: None, t_end: self.entry(ray, t) };
         };
         let edge = self.edge / (1u32 << depth) as f32;
         let low = self.low + (place >> (DEEPEST - depth)).as_vec3a() * edge;
-        Place { leaf: Some(node), t_end: exit(ray, t, low, edge) }
+        OctreePoint { leaf: Some(node), t_end: exit(ray, t, low, edge) }
     }
 
     /// The leaf around a point, the point in finest cells, and the cuts above the leaf.

@@ -9,7 +9,7 @@ use crate::{
     math::{Aabb, PathRng, Ray, luminance, mean},
     sampling::warp::spherical,
     surface::occluded,
-    transport::{direct, emission::Gatherer, scene::Scene, shadow},
+    transport::{direct, emission::EmissionEstimator, scene::Scene, shadow},
     volume::phase::henyey_greenstein,
 };
 
@@ -27,7 +27,7 @@ const LEAST_DENSITY: f32 = 0.02;
 /// What a probe knows of its surroundings. Its numbers guide, so that rough ones will do.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Probe {
-    lobes: [Lobe; POINTS],
+    lobes: [DirectionalLobe; POINTS],
     /// Light that has turned before it gets here.
     indirect: Indirect,
     /// Radiance of the environment, taken to come from everywhere.
@@ -44,7 +44,7 @@ pub(super) struct Probe {
 
 /// Light from one direction.
 #[derive(Clone, Copy, Debug)]
-struct Lobe {
+struct DirectionalLobe {
     /// Unit, towards where it comes from.
     direction: Vec3A,
     /// ∫ L dω.
@@ -116,12 +116,12 @@ impl Probe {
     /// Looks at the lights from points in `bounds`.
     pub(super) fn new(
         scene: &Scene,
-        gatherer: &Gatherer,
+        emission_estimator: &EmissionEstimator,
         bounds: &Aabb,
         rng: &mut PathRng,
     ) -> Self {
-        let mut matter = Matter::default();
-        let mut lobes = [Lobe { direction: Vec3A::X, fluence: 0.0 }; POINTS];
+        let mut matter = MatterSums::default();
+        let mut lobes = [DirectionalLobe { direction: Vec3A::X, fluence: 0.0 }; POINTS];
         let (mut found, mut ambient) = (0, 0.0);
         for tried in 0..TRIES {
             let u = Vec3A::new(rng.uniform(), rng.uniform(), rng.uniform());
@@ -129,7 +129,7 @@ impl Probe {
             let scatters = matter.read(scene, point);
             // The last points are taken as they come.
             if found < POINTS && (scatters || TRIES - tried <= POINTS - found) {
-                lobes[found] = look(scene, gatherer, point, rng);
+                lobes[found] = look(scene, emission_estimator, point, rng);
                 ambient += from_everywhere(scene, point, rng) / POINTS as f32;
                 found += 1;
             }
@@ -175,14 +175,14 @@ impl Probe {
 
 /// Sums over the points that were tried.
 #[derive(Default)]
-struct Matter {
+struct MatterSums {
     majorant: f32,
     mu_t: f32,
     mu_s: f32,
     g: f32,
 }
 
-impl Matter {
+impl MatterSums {
     /// Adds what is at a point; whether it scatters.
     fn read(&mut self, scene: &Scene, point: Vec3A) -> bool {
         let Some(at) = scene.world.matter_at(point) else { return false };
@@ -209,11 +209,18 @@ impl Matter {
 }
 
 /// Light of one of the lights, drawn as a vertex there would draw it.
-fn look(scene: &Scene, gatherer: &Gatherer, point: Vec3A, rng: &mut PathRng) -> Lobe {
+fn look(
+    scene: &Scene,
+    emission_estimator: &EmissionEstimator,
+    point: Vec3A,
+    rng: &mut PathRng,
+) -> DirectionalLobe {
     let from = Receiver { position: point, normal: None };
-    match direct::glance(scene, gatherer, &from, rng) {
-        Some(look) => Lobe { direction: look.direction, fluence: finite(luminance(look.radiance)) },
-        None => Lobe { direction: Vec3A::X, fluence: 0.0 },
+    match direct::estimate_light(scene, emission_estimator, &from, rng) {
+        Some(look) => {
+            DirectionalLobe { direction: look.direction, fluence: finite(luminance(look.radiance)) }
+        }
+        None => DirectionalLobe { direction: Vec3A::X, fluence: 0.0 },
     }
 }
 

@@ -4,7 +4,7 @@
 use glam::{UVec2, Vec3A};
 
 use crate::{
-    light::{Glimpse, Receiver, Scores},
+    light::{Receiver, Scores, Visibility},
     math::{Aabb, PathRng, mean},
     transport::{direct, scene::Scene},
 };
@@ -22,10 +22,10 @@ pub(super) fn scores(scene: &Scene, node: u32, bounds: &Aabb) -> Option<Scores> 
     let look = |look: u32| {
         let pick = (f64::from(look) + offset) / f64::from(LOOKS);
         let from = Receiver { position: place(scene, bounds, &mut rng), normal: None };
-        direct::glimpse(scene, &from, pick, &mut rng)
+        direct::visibility(scene, &from, pick, &mut rng)
     };
-    let mut glimpses: Vec<Glimpse> = (0..LOOKS).filter_map(look).collect();
-    Scores::new(&mut glimpses)
+    let mut visibilities: Vec<Visibility> = (0..LOOKS).filter_map(look).collect();
+    Scores::new(&mut visibilities)
 }
 
 /// A random point that scatters, if one is found.

@@ -2,7 +2,7 @@
 
 use glam::Vec3A;
 
-use super::{Focus, Probe, Probes, child_of, in_scattered};
+use super::{CausticLobe, Probe, Probes, child_of, in_scattered};
 use crate::math::Aabb;
 
 /// A probe in its place.
@@ -11,7 +11,7 @@ pub struct ProbeView<'p> {
     /// The cube it stands for, in the world.
     pub bounds: Aabb,
     probe: &'p Probe,
-    foci: &'p [Focus],
+    caustic_lobes: &'p [CausticLobe],
 }
 
 impl ProbeView<'_> {
@@ -20,7 +20,7 @@ impl ProbeView<'_> {
     pub fn score(&self, direction: Vec3A) -> f32 {
         // The power is μ_s times the radiance.
         let mu_s = self.probe.power() / self.probe.radiance();
-        let score = mu_s * in_scattered(self.probe, self.foci, direction);
+        let score = mu_s * in_scattered(self.probe, self.caustic_lobes, direction);
         if score.is_finite() { score } else { 0.0 }
     }
 }
@@ -35,8 +35,9 @@ impl Probes {
                     left.extend((0..8).map(|i| (first + i, child_of(&bounds, i))));
                 }
                 None => {
-                    let (probe, foci) = (&self.probes[node as usize], self.foci.of(node));
-                    found(ProbeView { bounds, probe, foci });
+                    let (probe, caustic_lobes) =
+                        (&self.probes[node as usize], self.caustic_lobes.of(node));
+                    found(ProbeView { bounds, probe, caustic_lobes });
                 }
             }
         }

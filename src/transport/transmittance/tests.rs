@@ -10,7 +10,7 @@ use crate::volume::emission::Emission;
 use crate::volume::field::{RgbField, ScalarField};
 use crate::volume::procedural::Noise;
 use crate::volume::world::{Instance, World};
-use crate::volume::{Region, Substance, Volume};
+use crate::volume::{MediumProperties, Region, Volume};
 
 /// Largest |z|: of the 150 comparisons here one fails by chance once in 10 000 sets of jitters.
 const Z_LIMIT: f64 = 5.0;
@@ -22,7 +22,7 @@ const WAYS: u32 = 60_000;
 /// Noise of high contrast in cells far larger than its details, and a uniform ball in its middle.
 fn world(noise_scale: Rgb, ball: f32) -> World {
     let noise = Noise { frequency: 3.0, octaves: 3, contrast: 4.0, seed: 5 };
-    let substance = |density, density_scale| Substance {
+    let properties = |density, density_scale| MediumProperties {
         density,
         density_scale,
         albedo: RgbField::Constant(Rgb::ZERO),
@@ -30,8 +30,8 @@ fn world(noise_scale: Rgb, ball: f32) -> World {
         emission: Emission::None,
     };
     let bounds = Aabb::centered(Vec3A::ONE);
-    let noisy = substance(ScalarField::Noise(noise), noise_scale);
-    let even = substance(ScalarField::Constant(1.0), Rgb::splat(ball));
+    let noisy = properties(ScalarField::Noise(noise), noise_scale);
+    let even = properties(ScalarField::Constant(1.0), Rgb::splat(ball));
     let volumes = [
         Volume::varying(bounds, noisy, Vec3A::splat(0.45), None),
         Volume::uniform(Region::Sphere { radius: 0.6 }, even),
@@ -62,7 +62,7 @@ fn expected(world: &World, ray: &Ray) -> [DVec3; 5] {
                 }
             };
             if inside {
-                tau += length * instance.volume().substance().mu_t(point).as_dvec3();
+                tau += length * instance.volume().properties().mu_t(point).as_dvec3();
             }
         }
     }

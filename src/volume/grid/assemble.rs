@@ -10,9 +10,9 @@ use std::collections::{HashMap, HashSet};
 use glam::IVec3;
 use rayon::prelude::*;
 
-use super::bricks::{Brick, BrickRange, Source, fill, union};
-use super::builder::{Origin, Parts, Region};
-use super::index::{Index, NODE_BRICKS, NODE_EDGE, Node, node_of};
+use super::bricks::{Brick, BrickRange, BrickSource, fill, union};
+use super::builder::{BlockOrigin, NodeRegion, Parts};
+use super::index::{BrickNumbers, Index, NODE_BRICKS, NODE_EDGE, node_of};
 use super::{SparseGrid, Voxel};
 use crate::error::{Error, Progress, Result};
 
@@ -22,13 +22,13 @@ const REACH: usize = NODE_EDGE as usize + 1;
 const BRICKS_PER_STEP: usize = 256;
 
 /// A place and its seven followers, counted in binary, z lowest.
-type Octet = [Origin; 8];
+type Octet = [BlockOrigin; 8];
 
 /// Which octets make the bricks and nodes, numbered in the order of their first appearance.
 struct Plan {
     bricks: Vec<Octet>,
     shared_bricks: HashMap<Octet, u32>,
-    nodes: Vec<Node>,
+    nodes: Vec<BrickNumbers>,
     shared_nodes: HashMap<Octet, u32>,
 }
 
@@ -54,7 +54,7 @@ pub(super) fn assemble<V: Voxel>(parts: Parts<V>, progress: Progress) -> Result<
 
 /// Every node that may hold more than background: those with data and the seven before each,
 /// whose last samples belong to it. Sorted. Nodes before the smallest coordinate hold no voxel.
-fn node_positions(regions: &HashMap<IVec3, Region>) -> Vec<IVec3> {
+fn node_positions(regions: &HashMap<IVec3, NodeRegion>) -> Vec<IVec3> {
     let mut positions: HashSet<IVec3> = HashSet::with_capacity(2 * regions.len());
     for &position in regions.keys() {
         positions.extend((0..8).map(|corner| position - step(corner)));
@@ -73,7 +73,7 @@ fn step(corner: usize) -> IVec3 {
 
 impl Plan {
     fn new() -> Self {
-        let background = [Origin::BACKGROUND; 8];
+        let background = [BlockOrigin::BACKGROUND; 8];
         Self {
             bricks: vec![background],
             shared_bricks: HashMap::from([(background, 0)]),
@@ -83,15 +83,15 @@ impl Plan {
     }
 
     /// The number of the node at `position`.
-    fn node(&mut self, position: IVec3, regions: &HashMap<IVec3, Region>) -> u32 {
-        const EMPTY: Region = Region::Constant(Origin::BACKGROUND);
-        let around: [&Region; 8] =
+    fn node(&mut self, position: IVec3, regions: &HashMap<IVec3, NodeRegion>) -> u32 {
+        const EMPTY: NodeRegion = NodeRegion::Constant(BlockOrigin::BACKGROUND);
+        let around: [&NodeRegion; 8] =
             std::array::from_fn(|corner| regions.get(&(position + step(corner))).unwrap_or(&EMPTY));
-        let constants: Option<Vec<Origin>> = around
+        let constants: Option<Vec<BlockOrigin>> = around
             .iter()
             .map(|region| match region {
-                Region::Constant(origin) => Some(*origin),
-                Region::Blocks(_) => None,
+                NodeRegion::Constant(origin) => Some(*origin),
+                NodeRegion::Blocks(_) => None,
             })
             .collect();
         let shared: Option<Octet> = constants.and_then(|octet| octet.try_into().ok());
@@ -110,7 +110,7 @@ impl Plan {
         id
     }
 
-    fn bricks_of(&mut self, around: &[&Region; 8]) -> Node {
+    fn bricks_of(&mut self, around: &[&NodeRegion; 8]) -> BrickNumbers {
         let blocks = blocks_of(around);
         let at = |x: usize, y: usize, z: usize| blocks[(x * REACH + y) * REACH + z];
         let mut node = [0; NODE_BRICKS];
@@ -126,7 +126,7 @@ impl Plan {
     }
 
     fn brick(&mut self, octet: Octet) -> u32 {
-        if octet == [Origin::BACKGROUND; 8] {
+        if octet == [BlockOrigin::BACKGROUND; 8] {
             return 0;
         }
         let shared = octet.iter().all(|origin| origin.leaf().is_none());
@@ -143,7 +143,7 @@ impl Plan {
 }
 
 /// The blocks of a node and the first of the next ones, from the node's region and its followers.
-fn blocks_of(around: &[&Region; 8]) -> Vec<Origin> {
+fn blocks_of(around: &[&NodeRegion; 8]) -> Vec<BlockOrigin> {
     let edge = NODE_EDGE as usize;
     let mut blocks = Vec::with_capacity(REACH * REACH * REACH);
     for x in 0..REACH {
@@ -151,8 +151,8 @@ fn blocks_of(around: &[&Region; 8]) -> Vec<Origin> {
             for z in 0..REACH {
                 let corner = ((x / edge) << 2) | ((y / edge) << 1) | (z / edge);
                 blocks.push(match around[corner] {
-                    Region::Constant(origin) => *origin,
-                    Region::Blocks(blocks) => {
+                    NodeRegion::Constant(origin) => *origin,
+                    NodeRegion::Blocks(blocks) => {
                         blocks[((x % edge) * edge + y % edge) * edge + z % edge]
                     }
                 });
@@ -192,14 +192,14 @@ fn fill_bricks<V: Voxel>(
     Ok((bricks, ranges))
 }
 
-fn source<V: Voxel>(origin: Origin, parts: &Parts<V>) -> Source<'_, V> {
+fn source<V: Voxel>(origin: BlockOrigin, parts: &Parts<V>) -> BrickSource<'_, V> {
     match origin.leaf() {
-        Some(leaf) => Source::Leaf(&parts.leaves[leaf].values),
-        None => Source::Constant(parts.constants[origin.constant()]),
+        Some(leaf) => BrickSource::Leaf(&parts.leaves[leaf].values),
+        None => BrickSource::Constant(parts.constants[origin.constant()]),
     }
 }
 
-fn node_range<V: Voxel>(node: &Node, ranges: &[BrickRange<V>]) -> (V, V) {
+fn node_range<V: Voxel>(node: &BrickNumbers, ranges: &[BrickRange<V>]) -> (V, V) {
     let mut last = node[0];
     let mut range = ranges[last as usize].whole();
     for &brick in node {

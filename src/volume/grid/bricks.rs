@@ -20,7 +20,7 @@ pub(super) type Brick<V> = [V; SAMPLES];
 
 /// Where the values of a block of 8x8x8 voxels come from.
 #[derive(Clone, Copy)]
-pub(super) enum Source<'a, V> {
+pub(super) enum BrickSource<'a, V> {
     Constant(V),
     /// 512 values, z fastest.
     Leaf(&'a [V; 512]),
@@ -52,19 +52,19 @@ pub(super) fn interpolate<V: Voxel>(brick: &Brick<V>, cell: IVec3, t: Vec3A) -> 
 
 /// Fills a brick from the block that it covers and the seven after it; `sources` counts in
 /// binary, z lowest.
-pub(super) fn fill<V: Voxel>(brick: &mut Brick<V>, sources: &[Source<'_, V>; 8]) {
+pub(super) fn fill<V: Voxel>(brick: &mut Brick<V>, sources: &[BrickSource<'_, V>; 8]) {
     for x in 0..EDGE {
         for y in 0..EDGE {
             let pair = (x >> 3) << 2 | (y >> 3) << 1;
             let row = &mut brick[x * STRIDE_X + y * STRIDE_Y..][..EDGE];
             let start = (x & 7) << 6 | (y & 7) << 3;
             match sources[pair] {
-                Source::Constant(value) => row[..8].fill(value),
-                Source::Leaf(values) => row[..8].copy_from_slice(&values[start..start + 8]),
+                BrickSource::Constant(value) => row[..8].fill(value),
+                BrickSource::Leaf(values) => row[..8].copy_from_slice(&values[start..start + 8]),
             }
             row[8] = match sources[pair | 1] {
-                Source::Constant(value) => value,
-                Source::Leaf(values) => values[start],
+                BrickSource::Constant(value) => value,
+                BrickSource::Leaf(values) => values[start],
             };
         }
     }

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::assemble::assemble;
 use super::index::{NODE_BRICKS, brick_in_node, node_of};
-use super::stats::Summary;
+use super::stats::GridSummary;
 use super::{IndexBox, SparseGrid, Voxel};
 use crate::error::{Error, NO_PROGRESS, Progress, Result};
 
@@ -41,9 +41,9 @@ impl<V> Leaf<V> {
 
 /// Where a block of 8 voxels a side gets its values: a leaf or, with the top bit clear, a constant.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
-pub(super) struct Origin(u32);
+pub(super) struct BlockOrigin(u32);
 
-impl Origin {
+impl BlockOrigin {
     const LEAF: u32 = 1 << 31;
     /// The constant that is the background.
     pub const BACKGROUND: Self = Self(0);
@@ -61,9 +61,9 @@ impl Origin {
 
 /// What a node's region of 128 voxels a side holds.
 #[derive(Clone)]
-pub(super) enum Region {
-    Constant(Origin),
-    Blocks(Box<[Origin; NODE_BRICKS]>),
+pub(super) enum NodeRegion {
+    Constant(BlockOrigin),
+    Blocks(Box<[BlockOrigin; NODE_BRICKS]>),
 }
 
 /// Everything that the grid is assembled from.
@@ -71,23 +71,23 @@ pub(super) struct Parts<V> {
     /// Values of the constants; the first is the background.
     pub constants: Vec<V>,
     pub leaves: Vec<Leaf<V>>,
-    pub regions: HashMap<IVec3, Region>,
-    pub summary: Summary<V>,
+    pub regions: HashMap<IVec3, NodeRegion>,
+    pub summary: GridSummary<V>,
 }
 
 /// Gathers the leaves and tiles of a grid, which are not meant to overlap; leaves win over tiles.
 pub struct GridBuilder<V> {
     leaves: Vec<Leaf<V>>,
     constants: Vec<V>,
-    constant_ids: HashMap<[u32; 3], Origin>,
-    regions: HashMap<IVec3, Region>,
-    summary: Summary<V>,
+    constant_ids: HashMap<[u32; 3], BlockOrigin>,
+    regions: HashMap<IVec3, NodeRegion>,
+    summary: GridSummary<V>,
 }
 
 impl<V: Voxel> GridBuilder<V> {
     /// An empty grid. A background that is not finite is replaced by zero, and counted.
     pub fn new(background: V) -> Self {
-        let mut summary = Summary::empty();
+        let mut summary = GridSummary::empty();
         let usable = background.is_usable();
         if !usable {
             summary.count_replaced();
@@ -96,7 +96,7 @@ impl<V: Voxel> GridBuilder<V> {
         Self {
             leaves: Vec::new(),
             constants: vec![background],
-            constant_ids: HashMap::from([(background.bits(), Origin::BACKGROUND)]),
+            constant_ids: HashMap::from([(background.bits(), BlockOrigin::BACKGROUND)]),
             regions: HashMap::new(),
             summary,
         }
@@ -127,7 +127,7 @@ impl<V: Voxel> GridBuilder<V> {
             return Err(Error::invalid("", "", "a tile that is not aligned to 8 voxels"));
         }
         let background = self.background();
-        self.summary.merge(&Summary::of_tile(bounds, value, active, background));
+        self.summary.merge(&GridSummary::of_tile(bounds, value, active, background));
         let value = if value.is_usable() { value } else { background };
         if value == background {
             return Ok(());
@@ -161,7 +161,7 @@ impl<V: Voxel> GridBuilder<V> {
             let (origin, value) = (*origin, values[0]);
             let from = match is_constant {
                 true => self.constant(value),
-                false => Origin(Origin::LEAF | number as u32),
+                false => BlockOrigin(BlockOrigin::LEAF | number as u32),
             };
             self.set_block(origin, from);
         }
@@ -170,9 +170,9 @@ impl<V: Voxel> GridBuilder<V> {
     }
 
     /// Of each leaf its sums, and whether all its values are one.
-    fn summarize(&mut self, progress: Progress) -> Result<Vec<(Summary<V>, bool)>> {
+    fn summarize(&mut self, progress: Progress) -> Result<Vec<(GridSummary<V>, bool)>> {
         let background = self.background();
-        let mut summaries = vec![(Summary::empty(), false); self.leaves.len()];
+        let mut summaries = vec![(GridSummary::empty(), false); self.leaves.len()];
         self.leaves
             .par_chunks_mut(LEAVES_PER_STEP)
             .zip(summaries.par_chunks_mut(LEAVES_PER_STEP))
@@ -181,7 +181,7 @@ impl<V: Voxel> GridBuilder<V> {
                     return Err(Error::Cancelled);
                 }
                 for (leaf, (summary, is_constant)) in leaves.iter_mut().zip(summaries) {
-                    *summary = Summary::of_leaf(leaf, background);
+                    *summary = GridSummary::of_leaf(leaf, background);
                     *is_constant = leaf.values.iter().all(|value| *value == leaf.values[0]);
                 }
                 Ok(())
@@ -190,21 +190,21 @@ impl<V: Voxel> GridBuilder<V> {
     }
 
     /// The number of a constant, the same for the same value.
-    fn constant(&mut self, value: V) -> Origin {
+    fn constant(&mut self, value: V) -> BlockOrigin {
         if value == self.constants[0] {
-            return Origin::BACKGROUND;
+            return BlockOrigin::BACKGROUND;
         }
         *self.constant_ids.entry(value.bits()).or_insert_with(|| {
             self.constants.push(value);
-            Origin(self.constants.len() as u32 - 1)
+            BlockOrigin(self.constants.len() as u32 - 1)
         })
     }
 
     /// Sets the part of a node's region that lies in `bounds`.
-    fn fill_region(&mut self, node: IVec3, bounds: &IndexBox, constant: Origin) {
+    fn fill_region(&mut self, node: IVec3, bounds: &IndexBox, constant: BlockOrigin) {
         let whole = super::index::node_box(node);
         if bounds.contains(&whole) {
-            self.regions.insert(node, Region::Constant(constant));
+            self.regions.insert(node, NodeRegion::Constant(constant));
             return;
         }
         let part = bounds.intersection(&whole);
@@ -215,20 +215,22 @@ impl<V: Voxel> GridBuilder<V> {
     }
 
     /// Sets the block of 8 voxels a side that starts at `voxel`.
-    fn set_block(&mut self, voxel: IVec3, from: Origin) {
+    fn set_block(&mut self, voxel: IVec3, from: BlockOrigin) {
         let node = node_of(voxel);
         let region = match self.regions.get_mut(&node) {
             Some(region) => region,
-            None if from == Origin::BACKGROUND => return,
-            None => self.regions.entry(node).or_insert(Region::Constant(Origin::BACKGROUND)),
+            None if from == BlockOrigin::BACKGROUND => return,
+            None => {
+                self.regions.entry(node).or_insert(NodeRegion::Constant(BlockOrigin::BACKGROUND))
+            }
         };
-        if let Region::Constant(constant) = *region {
+        if let NodeRegion::Constant(constant) = *region {
             if constant == from {
                 return;
             }
-            *region = Region::Blocks(Box::new([constant; NODE_BRICKS]));
+            *region = NodeRegion::Blocks(Box::new([constant; NODE_BRICKS]));
         }
-        if let Region::Blocks(blocks) = region {
+        if let NodeRegion::Blocks(blocks) = region {
             blocks[brick_in_node(voxel)] = from;
         }
     }

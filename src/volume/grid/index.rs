@@ -14,7 +14,7 @@ pub(super) const NODE_EDGE: i32 = 1 << NODE_BITS;
 pub(super) const NODE_BRICKS: usize = 1 << (3 * NODE_BITS);
 
 /// The numbers of the 16x16x16 bricks of a node, z fastest.
-pub(super) type Node = [u32; NODE_BRICKS];
+pub(super) type BrickNumbers = [u32; NODE_BRICKS];
 
 /// A dense table of nodes may always have this many entries, and ...
 const DENSE_ENTRIES: u64 = 1 << 16;
@@ -46,11 +46,11 @@ pub(super) fn brick_in_node(voxel: IVec3) -> usize {
 /// data is scattered too far apart for that, a sorted list of them. Number 0 is, for nodes and
 /// bricks, the background.
 pub(super) struct Index {
-    table: Table,
-    pub nodes: Vec<Node>,
+    table: IndexTable,
+    pub nodes: Vec<BrickNumbers>,
 }
 
-enum Table {
+enum IndexTable {
     Dense {
         /// First voxel of the table.
         origin: IVec3,
@@ -66,14 +66,14 @@ enum Table {
 
 impl Index {
     /// `entries` are positions and numbers of nodes, sorted by [x, y, z], none twice.
-    pub fn new(entries: &[(IVec3, u32)], nodes: Vec<Node>) -> Self {
+    pub fn new(entries: &[(IVec3, u32)], nodes: Vec<BrickNumbers>) -> Self {
         let bounds = entries
             .iter()
             .map(|&(position, _)| IndexBox::of_voxel(position))
             .fold(None, |bounds, one| IndexBox::union(bounds, Some(one)));
         let table = match bounds {
             Some(bounds) if is_compact(&bounds, entries.len()) => dense(&bounds, entries),
-            _ => Table::Sparse {
+            _ => IndexTable::Sparse {
                 positions: entries.iter().map(|(position, _)| position.to_array()).collect(),
                 ids: entries.iter().map(|&(_, id)| id).collect(),
             },
@@ -85,7 +85,7 @@ impl Index {
     #[inline(always)]
     pub fn brick(&self, voxel: IVec3) -> usize {
         let node = match &self.table {
-            Table::Dense { origin, size, strides, ids } => {
+            IndexTable::Dense { origin, size, strides, ids } => {
                 // Wrapping, so that one comparison finds what lies before and beyond the table.
                 let local = voxel.wrapping_sub(*origin).as_uvec3();
                 if local.x >= size.x || local.y >= size.y || local.z >= size.z {
@@ -94,7 +94,7 @@ impl Index {
                 let [x, y, z] = local.to_array().map(|c| (c >> NODE_VOXEL_BITS) as usize);
                 ids.get(x * strides[0] + y * strides[1] + z).copied().unwrap_or(0)
             }
-            Table::Sparse { positions, ids } => find(positions, ids, node_of(voxel)),
+            IndexTable::Sparse { positions, ids } => find(positions, ids, node_of(voxel)),
         };
         self.nodes.get(node as usize).map_or(0, |node| node[brick_in_node(voxel)] as usize)
     }
@@ -104,7 +104,7 @@ impl Index {
     /// were left out, all of which are background. Takes time in proportion to what is stored.
     pub fn visit(&self, bounds: &IndexBox, mut visit: impl FnMut(IVec3, u32)) -> bool {
         match &self.table {
-            Table::Dense { origin, size, strides, ids } => {
+            IndexTable::Dense { origin, size, strides, ids } => {
                 let first = node_of(*origin);
                 let last = first + node_of(size.as_ivec3()) - 1;
                 let table = IndexBox { min: first, max: last };
@@ -115,7 +115,7 @@ impl Index {
                 }
                 inside != *bounds
             }
-            Table::Sparse { positions, ids } => {
+            IndexTable::Sparse { positions, ids } => {
                 let wanted = bounds.voxel_count();
                 if wanted <= positions.len() as u64 {
                     bounds.positions().for_each(|at| visit(at, find(positions, ids, at)));
@@ -136,7 +136,7 @@ impl Index {
 
     /// How often each of `bricks` bricks stands somewhere; of the background nothing is known.
     pub fn brick_uses(&self, bricks: usize) -> Vec<u64> {
-        let (Table::Dense { ids, .. } | Table::Sparse { ids, .. }) = &self.table;
+        let (IndexTable::Dense { ids, .. } | IndexTable::Sparse { ids, .. }) = &self.table;
         let mut node_uses = vec![0_u64; self.nodes.len()];
         for &id in ids {
             node_uses[id as usize] += 1;
@@ -154,8 +154,10 @@ impl Index {
     /// Memory taken, in bytes.
     pub fn memory_bytes(&self) -> usize {
         let table = match &self.table {
-            Table::Dense { ids, .. } => size_of_val(&**ids),
-            Table::Sparse { positions, ids } => size_of_val(&**positions) + size_of_val(&**ids),
+            IndexTable::Dense { ids, .. } => size_of_val(&**ids),
+            IndexTable::Sparse { positions, ids } => {
+                size_of_val(&**positions) + size_of_val(&**ids)
+            }
         };
         table + size_of_val(&*self.nodes)
     }
@@ -167,7 +169,7 @@ fn is_compact(bounds: &IndexBox, nodes: usize) -> bool {
     edges.max_element() as u64 <= DENSE_EDGE && bounds.voxel_count() <= limit
 }
 
-fn dense(bounds: &IndexBox, entries: &[(IVec3, u32)]) -> Table {
+fn dense(bounds: &IndexBox, entries: &[(IVec3, u32)]) -> IndexTable {
     let edges = bounds.max - bounds.min + 1;
     let [nx, ny, nz] = edges.to_array().map(|edge| edge as usize);
     let strides = [ny * nz, nz];
@@ -177,7 +179,7 @@ fn dense(bounds: &IndexBox, entries: &[(IVec3, u32)]) -> Table {
         ids[x * strides[0] + y * strides[1] + z] = id;
     }
     let origin = bounds.min << NODE_VOXEL_BITS;
-    Table::Dense { origin, size: edges.as_uvec3() << NODE_VOXEL_BITS, strides, ids }
+    IndexTable::Dense { origin, size: edges.as_uvec3() << NODE_VOXEL_BITS, strides, ids }
 }
 
 /// Kept out of line so that look-ups in the usual table stay short.

@@ -24,7 +24,7 @@ pub struct GridStats<V> {
 
 /// Sums over leaves and tiles, from which [`GridStats`] come.
 #[derive(Clone, Copy)]
-pub(super) struct Summary<V> {
+pub(super) struct GridSummary<V> {
     range: Option<(V, V)>,
     sum: [f64; 3],
     summed: u64,
@@ -35,7 +35,7 @@ pub(super) struct Summary<V> {
     replaced: u64,
 }
 
-impl<V: Voxel> Summary<V> {
+impl<V: Voxel> GridSummary<V> {
     pub fn empty() -> Self {
         Self {
             range: None,

@@ -30,7 +30,7 @@ enum Inner {
     Zlib,
 }
 
-struct Header {
+struct BloscHeader {
     flags: u8,
     item: usize,
     block: usize,
@@ -57,7 +57,7 @@ pub(super) fn decompress(
     Ok(())
 }
 
-fn read_header(source: &[u8], expected: usize) -> Result<Header, String> {
+fn read_header(source: &[u8], expected: usize) -> Result<BloscHeader, String> {
     let &[version, _, flags, item, ..] = source else { return Err(damaged()) };
     let sizes = (word(source, 4), word(source, 8), word(source, 12));
     let (Some(unpacked), Some(block), Some(packed)) = sizes else { return Err(damaged()) };
@@ -80,7 +80,7 @@ fn read_header(source: &[u8], expected: usize) -> Result<Header, String> {
             ));
         }
     };
-    Ok(Header { flags, item: item.into(), block, inner })
+    Ok(BloscHeader { flags, item: item.into(), block, inner })
 }
 
 fn damaged() -> String {
@@ -95,7 +95,7 @@ fn word(bytes: &[u8], at: usize) -> Option<usize> {
 fn decompress_block(
     mut packed: &[u8],
     block: &mut [u8],
-    header: &Header,
+    header: &BloscHeader,
     inner: Inner,
     scratch: &mut Scratch,
 ) -> Result<(), String> {

@@ -7,7 +7,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::entry::{GridInfo, TreePlace};
-use super::header::Header;
+use super::header::VdbHeader;
 use super::metadata::{self, Metadata};
 use super::stream::{Fault, Result as Step, Stream};
 use super::tree::{self, Tree};
@@ -51,7 +51,7 @@ impl Directory {
         let bytes = bytes.into();
         let mut stream = Stream::new(&bytes, 0, "header");
         let in_file = |fault: Fault| fault.into_error(file, "");
-        let header = Header::read(&mut stream).map_err(in_file)?;
+        let header = VdbHeader::read(&mut stream).map_err(in_file)?;
         let metadata = metadata::read(&mut stream).map_err(in_file)?;
         stream.enter("list of grids");
         // Three texts and three offsets are the least that a grid takes.

@@ -4,12 +4,12 @@ use std::fmt;
 use std::ops::Range;
 
 use super::compression::Compression;
-use super::header::Header;
+use super::header::VdbHeader;
 use super::metadata::{self, MetaValue, Metadata};
 use super::stream::{Fault, Result, Stream};
 use super::transform::{self, Transform};
 use super::tree;
-use super::values::{Layout, Scalar};
+use super::values::{Scalar, ValueLayout};
 use crate::error::Progress;
 
 /// What a grid is meant to be.
@@ -73,7 +73,7 @@ pub struct GridInfo {
 #[derive(Clone, Debug)]
 pub(super) enum TreePlace {
     /// Here.
-    Own { bytes: Range<usize>, layout: Layout },
+    Own { bytes: Range<usize>, layout: ValueLayout },
     /// It is that of the grid with this unique name.
     Shared(String),
     /// Somewhere, of a kind that is not loaded.
@@ -85,7 +85,7 @@ impl GridInfo {
     /// `name` is set as soon as it is known.
     pub(super) fn read(
         stream: &mut Stream,
-        header: &Header,
+        header: &VdbHeader,
         name: &mut String,
         progress: Progress,
     ) -> Result<Self> {
@@ -145,7 +145,7 @@ impl Descriptor {
     }
 
     /// Reads what comes before the tree, if the grid has one of its own.
-    fn read_grid(self, stream: &mut Stream, header: &Header) -> Result<GridInfo> {
+    fn read_grid(self, stream: &mut Stream, header: &VdbHeader) -> Result<GridInfo> {
         let compression = match header.has_node_masks() {
             true => Compression::read(stream)?,
             false => header.compression,
@@ -165,7 +165,8 @@ impl Descriptor {
             _ if !self.parent.is_empty() => TreePlace::Shared(self.parent.clone()),
             Some((scalar, components)) => {
                 let node_masks = header.has_node_masks();
-                let layout = Layout { scalar, components, half: is_half, compression, node_masks };
+                let layout =
+                    ValueLayout { scalar, components, half: is_half, compression, node_masks };
                 TreePlace::Own { bytes: stream.rest(), layout }
             }
             None => TreePlace::Foreign,

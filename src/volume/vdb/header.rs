@@ -12,7 +12,7 @@ const UUID_LENGTH: usize = 36;
 
 /// What the whole file has in common.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Header {
+pub(super) struct VdbHeader {
     pub version: u32,
     /// Whether each grid says where it ends.
     pub has_offsets: bool,
@@ -20,7 +20,7 @@ pub(super) struct Header {
     pub compression: Compression,
 }
 
-impl Header {
+impl VdbHeader {
     pub fn read(stream: &mut Stream) -> Result<Self> {
         stream.enter("header");
         check_magic(stream)?;
@@ -85,8 +85,8 @@ mod tests {
         bytes
     }
 
-    fn read(bytes: &[u8]) -> Result<Header> {
-        Header::read(&mut Stream::new(bytes, 0, ""))
+    fn read(bytes: &[u8]) -> Result<VdbHeader> {
+        VdbHeader::read(&mut Stream::new(bytes, 0, ""))
     }
 
     #[test]

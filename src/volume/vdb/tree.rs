@@ -11,28 +11,28 @@ use rayon::prelude::*;
 
 use super::compression::Codec;
 use super::stream::{Fault, Result, Stream};
-use super::values::{Layout, Mask, PackedValues};
+use super::values::{Mask, PackedValues, ValueLayout};
 use crate::error::Progress;
 use crate::volume::grid::{GridBuilder, Leaf, SparseGrid, Voxel};
 
 /// log2 of the places along the edge of a node, and of the voxels along one of them.
 #[derive(Clone, Copy)]
-struct Level {
+struct TreeLevel {
     places: u32,
     voxels: u32,
 }
 
 /// The children of the root, 4096 voxels a side.
-const UPPER: Level = Level { places: 5, voxels: 7 };
+const UPPER: TreeLevel = TreeLevel { places: 5, voxels: 7 };
 /// Their children, 128 voxels a side.
-const LOWER: Level = Level { places: 4, voxels: 3 };
+const LOWER: TreeLevel = TreeLevel { places: 4, voxels: 3 };
 const ROOT_BITS: u32 = 12;
 const LEAF_VOXELS: usize = 512;
 /// Nodes scanned, or leaves decoded by one thread, between two looks at whether to stop.
 const SCAN_STEP: usize = 1024;
 const DECODE_STEP: usize = 128;
 
-impl Level {
+impl TreeLevel {
     fn count(self) -> usize {
         1 << (3 * self.places)
     }
@@ -54,7 +54,7 @@ struct RootTile<'a> {
 
 /// An internal node with the tiles among its places.
 struct InternalNode<'a> {
-    level: Level,
+    level: TreeLevel,
     origin: IVec3,
     children: Mask<'a>,
     active: Mask<'a>,
@@ -69,7 +69,7 @@ struct LeafNode<'a> {
 
 /// A tree whose nodes have been found but not unpacked.
 pub(super) struct Tree<'a> {
-    layout: Layout,
+    layout: ValueLayout,
     background: &'a [u8],
     root_tiles: Vec<RootTile<'a>>,
     internal: Vec<InternalNode<'a>>,
@@ -79,7 +79,7 @@ pub(super) struct Tree<'a> {
 /// Finds all nodes of the tree at the stream's position, and leaves the stream behind it.
 pub(super) fn scan<'a>(
     stream: &mut Stream<'a>,
-    layout: Layout,
+    layout: ValueLayout,
     progress: Progress,
 ) -> Result<Tree<'a>> {
     stream.enter("tree");
@@ -142,7 +142,7 @@ impl<'a> Scan<'a, '_, '_> {
         Ok(origin)
     }
 
-    fn internal(&mut self, level: Level, origin: IVec3) -> Result<()> {
+    fn internal(&mut self, level: TreeLevel, origin: IVec3) -> Result<()> {
         self.step()?;
         let layout = self.tree.layout;
         let children = Mask::read(self.stream, level.count())?;

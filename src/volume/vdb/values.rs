@@ -22,7 +22,7 @@ pub(super) enum Scalar {
 
 /// How the values of a tree are stored.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Layout {
+pub(super) struct ValueLayout {
     pub scalar: Scalar,
     pub components: usize,
     /// Buffers hold half floats; backgrounds, tiles at the root and inactive values do not.
@@ -32,7 +32,7 @@ pub(super) struct Layout {
     pub node_masks: bool,
 }
 
-impl Layout {
+impl ValueLayout {
     /// Size of a value outside buffers.
     pub fn value_bytes(&self) -> usize {
         self.components
@@ -56,7 +56,7 @@ impl Layout {
         }
     }
 
-    /// The value that starts `bytes`, which has [`Layout::value_bytes`].
+    /// The value that starts `bytes`, which has [`ValueLayout::value_bytes`].
     pub fn value<V: Voxel>(&self, bytes: &[u8]) -> V {
         let mut value = [V::ZERO];
         match self.scalar {
@@ -132,7 +132,7 @@ enum Inactive<'a> {
 }
 
 impl<'a> Inactive<'a> {
-    fn read(stream: &mut Stream<'a>, layout: &Layout, bits: usize) -> Result<Self> {
+    fn read(stream: &mut Stream<'a>, layout: &ValueLayout, bits: usize) -> Result<Self> {
         let size = layout.value_bytes();
         Ok(match stream.u8()? {
             0 => Self::Background,
@@ -171,7 +171,7 @@ impl<'a> PackedValues<'a> {
     /// stored before version 222, and since then all or the active ones.
     pub fn read(
         stream: &mut Stream<'a>,
-        layout: &Layout,
+        layout: &ValueLayout,
         active: &Mask<'a>,
         count: usize,
     ) -> Result<Self> {
@@ -189,7 +189,7 @@ impl<'a> PackedValues<'a> {
     /// version 222 only the first ones may be set.
     pub fn decode<V: Voxel>(
         &self,
-        layout: &Layout,
+        layout: &ValueLayout,
         active: &Mask,
         background: V,
         codec: &mut Codec,
@@ -209,7 +209,13 @@ impl<'a> PackedValues<'a> {
 
     /// Moves the stored values to their places and fills in the inactive ones, from the end so
     /// that nothing is overwritten before it moved.
-    fn spread<V: Voxel>(&self, layout: &Layout, active: &Mask, background: V, values: &mut [V]) {
+    fn spread<V: Voxel>(
+        &self,
+        layout: &ValueLayout,
+        active: &Mask,
+        background: V,
+        values: &mut [V],
+    ) {
         // Past zero by as much again: a negation that needs no operator of its own.
         let minus = V::lerp(background, V::ZERO, 2.0);
         let value = |bytes: &[u8]| layout.value::<V>(bytes);

@@ -5,7 +5,7 @@ use smallvec::SmallVec;
 
 use super::{Instance, World};
 use crate::math::{Ray, Rgb};
-use crate::volume::Bounds;
+use crate::volume::CoefficientBounds;
 use crate::volume::cells::CellWalk;
 use crate::volume::majorant::Majorant;
 use crate::volume::medium::{Coefficients, Segment};
@@ -13,19 +13,19 @@ use crate::volume::phase::PhaseMix;
 
 /// A volume that the ray enters. Few bytes, since a ray may meet many.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Entry {
+pub(super) struct VolumeEntry {
     t0: f32,
     t1: f32,
     instance: u32,
 }
 
 /// As many as meet most rays, so that they need no memory of their own.
-pub(super) type Entries = SmallVec<[Entry; 8]>;
+pub(super) type Entries = SmallVec<[VolumeEntry; 8]>;
 
-impl Entry {
+impl VolumeEntry {
     /// Where `ray` is inside of a volume with anything in it.
     pub(super) fn new(instance: &Instance, index: u32, ray: &Ray, t_max: f32) -> Option<Self> {
-        if let Bounds::Uniform(_, majorant) = instance.volume.bounds()
+        if let CoefficientBounds::Uniform(_, majorant) = instance.volume.bounds()
             && majorant.is_zero()
         {
             return None;
@@ -179,9 +179,9 @@ impl<'w> MediumRay<'w> {
     pub fn scattering(&self, t: f32) -> (Rgb, PhaseMix) {
         let mut mix = PhaseMix::default();
         if let [cursor] = self.inside.as_slice() {
-            let substance = cursor.instance.volume.substance();
-            let albedo = substance.albedo(cursor.local.at(t));
-            mix.add(substance.g, albedo);
+            let properties = cursor.instance.volume.properties();
+            let albedo = properties.albedo(cursor.local.at(t));
+            mix.add(properties.g, albedo);
             return (albedo, mix);
         }
         let (mu_t, mu_s) = self.extinction(t);
@@ -213,7 +213,7 @@ impl<'w> MediumRay<'w> {
     pub fn phase(&self, t: f32) -> PhaseMix {
         let mut mix = PhaseMix::default();
         for cursor in self.present() {
-            mix.add(cursor.instance.volume.substance().g, cursor.extinction(t).1);
+            mix.add(cursor.instance.volume.properties().g, cursor.extinction(t).1);
         }
         mix
     }
@@ -233,12 +233,12 @@ struct Cursor<'w> {
     t0: f32,
     t1: f32,
     majorant: Majorant,
-    way: Way,
+    way: Crossing,
 }
 
 /// What a volume is crossed by.
 #[derive(Clone, Copy, Debug)]
-enum Way {
+enum Crossing {
     /// At once, up to the end of a uniform volume.
     Uniform { end: f32 },
     /// Cell by cell.
@@ -250,8 +250,10 @@ impl<'w> Cursor<'w> {
     fn enter(instance: &'w Instance, ray: &Ray, t0: f32, t1: f32) -> Self {
         let local = instance.local_ray(ray);
         let (majorant, way) = match instance.volume.bounds() {
-            Bounds::Uniform(_, majorant) => (*majorant, Way::Uniform { end: t1 }),
-            Bounds::Cells(grid) => (Majorant::default(), Way::Cells(grid.walk(&local, t0, t1))),
+            CoefficientBounds::Uniform(_, majorant) => (*majorant, Crossing::Uniform { end: t1 }),
+            CoefficientBounds::Cells(grid) => {
+                (Majorant::default(), Crossing::Cells(grid.walk(&local, t0, t1)))
+            }
         };
         Self { instance, local, t0, t1: t0, majorant, way }
     }
@@ -260,14 +262,16 @@ impl<'w> Cursor<'w> {
     #[inline]
     fn advance(&mut self) -> bool {
         match (&mut self.way, self.instance.volume.bounds()) {
-            (Way::Cells(walk), Bounds::Cells(grid)) => match grid.next_occupied(walk) {
-                Some((t0, t1, majorant)) => {
-                    (self.t0, self.t1, self.majorant) = (t0, t1, majorant);
-                    true
+            (Crossing::Cells(walk), CoefficientBounds::Cells(grid)) => {
+                match grid.next_occupied(walk) {
+                    Some((t0, t1, majorant)) => {
+                        (self.t0, self.t1, self.majorant) = (t0, t1, majorant);
+                        true
+                    }
+                    None => false,
                 }
-                None => false,
-            },
-            (Way::Uniform { end }, _) if self.t1 < *end => {
+            }
+            (Crossing::Uniform { end }, _) if self.t1 < *end => {
                 self.t1 = *end;
                 true
             }
@@ -298,15 +302,15 @@ impl<'w> Cursor<'w> {
             majorant: self.majorant.mu_t,
             emission_rate: self.majorant.emission * self.instance.emission_rate,
             voxel_rate: self.instance.voxel_rate,
-            uniform: matches!(self.way, Way::Uniform { .. }),
-            gray: self.instance.volume.substance().is_gray(),
+            uniform: matches!(self.way, Crossing::Uniform { .. }),
+            gray: self.instance.volume.properties().is_gray(),
         }
     }
 
     fn bounds_of_mu_t(&self) -> (Rgb, Rgb) {
         match (&self.way, self.instance.volume.bounds()) {
-            (Way::Cells(walk), Bounds::Cells(grid)) => {
-                let tint = self.instance.volume.substance().tint();
+            (Crossing::Cells(walk), CoefficientBounds::Cells(grid)) => {
+                let tint = self.instance.volume.properties().tint();
                 (tint * grid.minorant(walk), tint * self.majorant.mu_t)
             }
             _ => (self.mu_t(self.t0), self.mu_t(self.t0)),
@@ -316,32 +320,36 @@ impl<'w> Cursor<'w> {
     #[inline]
     fn mu_t(&self, t: f32) -> Rgb {
         match self.instance.volume.bounds() {
-            Bounds::Uniform(coefficients, _) => coefficients.mu_t,
-            Bounds::Cells(_) => self.instance.volume.substance().mu_t(self.local.at(t)),
+            CoefficientBounds::Uniform(coefficients, _) => coefficients.mu_t,
+            CoefficientBounds::Cells(_) => self.instance.volume.properties().mu_t(self.local.at(t)),
         }
     }
 
     #[inline]
     fn extinction(&self, t: f32) -> (Rgb, Rgb) {
         match self.instance.volume.bounds() {
-            Bounds::Uniform(coefficients, _) => (coefficients.mu_t, coefficients.mu_s),
-            Bounds::Cells(_) => self.instance.volume.substance().extinction(self.local.at(t)),
+            CoefficientBounds::Uniform(coefficients, _) => (coefficients.mu_t, coefficients.mu_s),
+            CoefficientBounds::Cells(_) => {
+                self.instance.volume.properties().extinction(self.local.at(t))
+            }
         }
     }
 
     #[inline]
     fn emission(&self, t: f32) -> Rgb {
         match self.instance.volume.bounds() {
-            Bounds::Uniform(coefficients, _) => coefficients.emission,
-            Bounds::Cells(_) => self.instance.volume.substance().emission(self.local.at(t)),
+            CoefficientBounds::Uniform(coefficients, _) => coefficients.emission,
+            CoefficientBounds::Cells(_) => {
+                self.instance.volume.properties().emission(self.local.at(t))
+            }
         }
     }
 
     #[inline]
     fn coefficients(&self, t: f32) -> Coefficients {
         match self.instance.volume.bounds() {
-            Bounds::Uniform(coefficients, _) => *coefficients,
-            Bounds::Cells(_) => self.instance.volume.substance().at(self.local.at(t)),
+            CoefficientBounds::Uniform(coefficients, _) => *coefficients,
+            CoefficientBounds::Cells(_) => self.instance.volume.properties().at(self.local.at(t)),
         }
     }
 }

@@ -24,7 +24,7 @@ impl Emissive {
         let boxes: Vec<Aabb> =
             indices.iter().map(|&i| instances[i as usize].emission_bounds()).collect();
         let unsampled =
-            instances.iter().any(|i| !i.emits() && i.volume().substance().emission.is_some());
+            instances.iter().any(|i| !i.emits() && i.volume().properties().emission.is_some());
         Self { indices, hierarchy: Bvh::new(&boxes), unsampled }
     }
 }
@@ -78,12 +78,12 @@ impl Instance {
 
 impl World {
     /// Whether anything glows at all.
-    pub fn glows(&self) -> bool {
+    pub fn emits(&self) -> bool {
         self.emissive.unsampled || !self.emissive.indices.is_empty()
     }
 
     /// Whether anything glows where no sampled point lies: media without borders.
-    pub fn glows_beyond_lights(&self) -> bool {
+    pub fn emits_beyond_lights(&self) -> bool {
         self.emissive.unsampled
     }
 

@@ -12,7 +12,7 @@ use crate::scene::{self, Settings};
 
 /// A reference and what is known about it.
 #[derive(Debug)]
-pub struct Held {
+pub struct LoadedReference {
     /// What the user calls it.
     pub name: String,
     /// The picture.
@@ -34,14 +34,14 @@ enum Shows {
 }
 
 /// Where a reference comes from.
-pub enum Origin {
+pub enum ReferenceOrigin {
     /// A file; the name is what the user calls it.
     File(String, PathBuf),
     /// A picture of these settings.
     Picture(String, Arc<Picture>, Box<Settings>),
 }
 
-impl Origin {
+impl ReferenceOrigin {
     /// A file under its own name.
     pub fn file(path: PathBuf) -> Self {
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -49,19 +49,19 @@ impl Origin {
     }
 }
 
-impl Held {
+impl LoadedReference {
     /// Takes it from there.
     ///
     /// # Errors
     /// As [`Reference::load`] and [`Reference::new`].
-    pub fn new(origin: Origin) -> Result<Self> {
+    pub fn new(origin: ReferenceOrigin) -> Result<Self> {
         match origin {
-            Origin::File(name, path) => {
+            ReferenceOrigin::File(name, path) => {
                 let reference = Reference::load(&path)?;
                 let shows = camera(&path).map_or(Shows::Unknown, Shows::Camera);
                 Ok(Self { name, reference, path: Some(path), shows })
             }
-            Origin::Picture(name, picture, settings) => {
+            ReferenceOrigin::Picture(name, picture, settings) => {
                 let reference = Reference::new(&name, picture.size, picture.pixels.clone())?;
                 Ok(Self { name, reference, path: None, shows: Shows::Scene(settings) })
             }
@@ -95,18 +95,18 @@ fn camera(path: &Path) -> Option<CameraSettings> {
 }
 
 /// A reference under way.
-pub struct Loading(mpsc::Receiver<Result<Held>>);
+pub struct Loading(mpsc::Receiver<Result<LoadedReference>>);
 
 impl Loading {
     /// Starts to take it from `origin`; `wake` is called once it is there.
     ///
     /// # Errors
     /// When the system refuses to start a thread.
-    pub fn start(origin: Origin, wake: impl FnOnce() + Send + 'static) -> Result<Self> {
+    pub fn start(origin: ReferenceOrigin, wake: impl FnOnce() + Send + 'static) -> Result<Self> {
         let (sender, receiver) = mpsc::channel();
         let work = move || {
             // Nobody listens any more where another one was asked for.
-            let _ = sender.send(Held::new(origin));
+            let _ = sender.send(LoadedReference::new(origin));
             wake();
         };
         let thread = std::thread::Builder::new().name("reference".to_owned()).spawn(work);
@@ -115,7 +115,7 @@ impl Loading {
     }
 
     /// What came of it, once.
-    pub fn poll(&self) -> Option<Result<Held>> {
+    pub fn poll(&self) -> Option<Result<LoadedReference>> {
         match self.0.try_recv() {
             Ok(result) => Some(result),
             Err(mpsc::TryRecvError::Empty) => None,

@@ -7,7 +7,7 @@ use glam::UVec2;
 use super::*;
 use crate::error::NO_PROGRESS;
 use crate::render::schedule::Limits;
-use crate::render::{Film, Job, Picture, render_headless};
+use crate::render::{Film, Picture, RenderJob, render_headless};
 use crate::scene::{Overrides, Settings, VolumeCache, assemble, parse};
 
 const SIZE: UVec2 = UVec2::new(48, 32);
@@ -45,19 +45,19 @@ impl Scenes {
         Self { cache: VolumeCache::default(), settings }
     }
 
-    fn build(&self) -> Built {
+    fn build(&self) -> BuiltScene {
         let scene = assemble(&self.settings, &self.cache, NO_PROGRESS).unwrap();
         let scene = Arc::new(scene);
-        Built { settings: self.settings.clone(), notes: Vec::new(), scene }
+        BuiltScene { settings: self.settings.clone(), notes: Vec::new(), scene }
     }
 }
 
 /// A prober that waits at a gate before it places anything.
-fn prober() -> (Prober, Arc<Gate>) {
+fn probe_placer() -> (ProbePlacer, Arc<Gate>) {
     let session = Arc::new(Session::new(Some(2), || ()).unwrap());
     let gate = Arc::new(Gate::default());
     let at = gate.clone();
-    let prober = Prober::with_maker(session, move |scene, stop| {
+    let probe_placer = ProbePlacer::with_maker(session, move |scene, stop| {
         while !at.open.load(Ordering::Relaxed) && !stop() {
             std::thread::sleep(Duration::from_millis(1));
         }
@@ -65,17 +65,17 @@ fn prober() -> (Prober, Arc<Gate>) {
         at.passed.fetch_add(1, Ordering::Relaxed);
         Some(probes)
     });
-    (prober.unwrap(), gate)
+    (probe_placer.unwrap(), gate)
 }
 
-fn start(generation: u64) -> Start {
-    Start { size: SIZE, generation }
+fn start(generation: u64) -> RenderStart {
+    RenderStart { size: SIZE, generation }
 }
 
-fn wait(prober: &Prober, will_do: impl Fn(&Picture) -> bool) -> Arc<Picture> {
+fn wait(probe_placer: &ProbePlacer, will_do: impl Fn(&Picture) -> bool) -> Arc<Picture> {
     let begun = Instant::now();
     loop {
-        if let Some(picture) = prober.session.latest().filter(|picture| will_do(picture)) {
+        if let Some(picture) = probe_placer.session.latest().filter(|picture| will_do(picture)) {
             return picture;
         }
         assert!(begun.elapsed() < Duration::from_secs(60), "no such picture");
@@ -84,8 +84,8 @@ fn wait(prober: &Prober, will_do: impl Fn(&Picture) -> bool) -> Arc<Picture> {
 }
 
 /// What a render that starts with its probes comes to.
-fn headless(built: &Built) -> Film {
-    let job = Job {
+fn headless(built: &BuiltScene) -> Film {
+    let job = RenderJob {
         sampler: Arc::new(Frame::new(built.scene.clone(), SIZE, built.settings.film.seed)),
         size: SIZE,
         limits: Limits { spp: SPP, seconds: None },
@@ -98,34 +98,34 @@ fn headless(built: &Built) -> Film {
 #[test]
 fn a_picture_comes_before_the_probes_and_with_them_the_one_of_a_headless_render() {
     let built = Scenes::new(SMOKE).build();
-    let (prober, gate) = prober();
-    prober.start(&built, start(1), None);
+    let (probe_placer, gate) = probe_placer();
+    probe_placer.start(&built, start(1), None);
     let paths = u64::from(SIZE.element_product() * SPP);
-    let before = wait(&prober, |picture| picture.stats.paths == paths);
+    let before = wait(&probe_placer, |picture| picture.stats.paths == paths);
     assert!(!before.stats.finished, "its probes are still to come");
-    assert!(prober.probes(&built).is_none());
+    assert!(probe_placer.probes(&built).is_none());
 
     gate.open.store(true, Ordering::Relaxed);
-    let after = wait(&prober, |picture| picture.stats.finished);
+    let after = wait(&probe_placer, |picture| picture.stats.finished);
     assert!(after.generation == 1 && after.complete);
-    let film = prober.session.snapshot().recv().unwrap();
+    let film = probe_placer.session.snapshot().recv().unwrap();
     assert_eq!(film, headless(&built));
     assert_ne!(before.pixels, after.pixels);
-    assert!(prober.probes(&built).is_some());
+    assert!(probe_placer.probes(&built).is_some());
 }
 
 #[test]
 fn camera_and_film_edits_reuse_the_probes_and_others_do_not() {
     let mut scenes = Scenes::new(SMOKE);
-    let (prober, gate) = prober();
+    let (probe_placer, gate) = probe_placer();
     gate.open.store(true, Ordering::Relaxed);
     let mut generation = 0;
     let mut made_by = |scenes: &Scenes| {
         generation += 1;
         let built = scenes.build();
-        prober.start(&built, start(generation), None);
-        wait(&prober, |picture| picture.generation == generation && picture.stats.finished);
-        assert_eq!(prober.session.snapshot().recv().unwrap(), headless(&built));
+        probe_placer.start(&built, start(generation), None);
+        wait(&probe_placer, |picture| picture.generation == generation && picture.stats.finished);
+        assert_eq!(probe_placer.session.snapshot().recv().unwrap(), headless(&built));
         gate.passed.load(Ordering::Relaxed)
     };
     assert_eq!(made_by(&scenes), 1);
@@ -161,22 +161,22 @@ fn a_fog_without_borders_has_probes_around_its_camera() {
 #[test]
 fn edits_while_probes_are_placed() {
     let mut scenes = Scenes::new(SMOKE);
-    let (prober, gate) = prober();
-    prober.start(&scenes.build(), start(1), None);
-    let edition = || prober.shared.edition.load(Ordering::Relaxed);
-    let under_way = edition();
+    let (probe_placer, gate) = probe_placer();
+    probe_placer.start(&scenes.build(), start(1), None);
+    let generation = || probe_placer.shared.generation.load(Ordering::Relaxed);
+    let under_way = generation();
     for generation in 2..5 {
         scenes.settings.camera.position[0] += 0.1;
-        prober.start(&scenes.build(), start(generation), None);
+        probe_placer.start(&scenes.build(), start(generation), None);
     }
-    assert_eq!(edition(), under_way);
+    assert_eq!(generation(), under_way);
     scenes.settings.light[0].position = Some([0.0, 0.5, 0.0]);
     let last = scenes.build();
-    prober.start(&last, start(5), None);
-    assert_ne!(edition(), under_way);
+    probe_placer.start(&last, start(5), None);
+    assert_ne!(generation(), under_way);
     gate.open.store(true, Ordering::Relaxed);
-    wait(&prober, |picture| picture.generation == 5 && picture.stats.finished);
-    assert_eq!(prober.session.snapshot().recv().unwrap(), headless(&last));
+    wait(&probe_placer, |picture| picture.generation == 5 && picture.stats.finished);
+    assert_eq!(probe_placer.session.snapshot().recv().unwrap(), headless(&last));
     assert_eq!(gate.passed.load(Ordering::Relaxed), 1);
 }
 

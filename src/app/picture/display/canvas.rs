@@ -8,14 +8,14 @@ use glam::{IVec2, UVec2};
 
 /// The pixels of the framebuffer that a part of the window covers.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Place {
+pub(super) struct PixelRect {
     /// Its upper left pixel.
     pub corner: [i32; 2],
     /// Its width and height.
     pub size: UVec2,
 }
 
-impl Place {
+impl PixelRect {
     /// Of a rectangle in points, on a screen of that size and as many pixels a point.
     pub fn of(rect: &Rect, screen: &egui_wgpu::ScreenDescriptor) -> Self {
         let place =
@@ -34,13 +34,13 @@ impl Place {
 }
 
 /// The texture that a pane is drawn on.
-pub(super) struct Canvas {
+pub(super) struct GpuCanvas {
     size: UVec2,
     target: wgpu::TextureView,
     bindings: wgpu::BindGroup,
 }
 
-impl Canvas {
+impl GpuCanvas {
     /// An empty one. `view` holds how it lies in the window.
     pub fn new(
         device: &wgpu::Device,
@@ -71,7 +71,7 @@ impl Canvas {
         encoder: &mut wgpu::CommandEncoder,
         pipeline: &wgpu::RenderPipeline,
         bindings: &wgpu::BindGroup,
-        seen: &Place,
+        seen: &PixelRect,
     ) {
         let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some("canvas"),
@@ -101,8 +101,8 @@ impl Canvas {
 mod tests {
     use super::*;
 
-    fn place(x: i32, y: i32, width: u32, height: u32) -> Place {
-        Place { corner: [x, y], size: UVec2::new(width, height) }
+    fn place(x: i32, y: i32, width: u32, height: u32) -> PixelRect {
+        PixelRect { corner: [x, y], size: UVec2::new(width, height) }
     }
 
     #[test]

@@ -31,7 +31,7 @@ pub enum Handle {
 
 /// What a line belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
+pub enum HandlePart {
     /// An axis of the world.
     Axis(usize),
     /// The light's own shape.
@@ -70,10 +70,10 @@ impl Handle {
     }
 
     /// What it is drawn as.
-    pub fn part(self) -> Part {
+    pub fn part(self) -> HandlePart {
         match self {
-            Self::Axis(axis) => Part::Axis(axis),
-            _ => Part::Body,
+            Self::Axis(axis) => HandlePart::Axis(axis),
+            _ => HandlePart::Body,
         }
     }
 }
@@ -81,7 +81,7 @@ impl Handle {
 /// Lines and handles of a light.
 pub struct Figure {
     /// Lines of the world.
-    pub lines: Vec<([Vec3A; 2], Part)>,
+    pub lines: Vec<([Vec3A; 2], HandlePart)>,
     /// Handles and where they are; where they lie above one another the first one counts.
     pub handles: Vec<(Handle, Vec3A)>,
 }
@@ -125,7 +125,7 @@ impl Figure {
             figure.handles.push((Handle::Center, at));
             for (axis, direction) in Vec3A::AXES.into_iter().enumerate() {
                 let end = at + arm * direction;
-                figure.lines.push(([at, end], Part::Axis(axis)));
+                figure.lines.push(([at, end], HandlePart::Axis(axis)));
                 figure.handles.push((Handle::Axis(axis), end));
             }
         }
@@ -142,7 +142,7 @@ impl Figure {
     }
 
     fn line(&mut self, a: Vec3A, b: Vec3A) {
-        self.lines.push(([a, b], Part::Body));
+        self.lines.push(([a, b], HandlePart::Body));
     }
 
     fn circle(&mut self, center: Vec3A, [u, v]: [Vec3A; 2]) {

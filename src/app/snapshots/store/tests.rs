@@ -14,9 +14,9 @@ fn record(name: &str, kept: u64) -> Record {
     Record { name: name.to_owned(), kept, spp: 0.5, ..Record::default() }
 }
 
-fn add(store: &Store, record: Record) -> Entry {
+fn add(store: &Store, record: Record) -> StoredSnapshot {
     let thumbnail = Thumbnail { size: UVec2::ONE, pixels: vec![[0.5; 4]] };
-    let (film, header) = (film(), Header::default());
+    let (film, header) = (film(), SnapshotHeader::default());
     let tone = Tone::default();
     store.add(Fresh { film: &film, header: &header, record, thumbnail: &thumbnail, tone }).unwrap()
 }
@@ -104,7 +104,7 @@ fn what_is_broken_is_skipped_and_told() {
 
 #[test]
 fn the_oldest_without_a_note_go_first_and_the_newest_never() {
-    let entry = |id: u64, note: &str| Entry {
+    let entry = |id: u64, note: &str| StoredSnapshot {
         id: id.to_string(),
         record: Record { note: note.to_owned(), ..record("x", id) },
         bytes: 10,

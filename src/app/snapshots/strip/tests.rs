@@ -1,8 +1,8 @@
 use super::*;
 
-fn entry(name: &str) -> Entry {
+fn entry(name: &str) -> StoredSnapshot {
     let record = Record { name: name.to_owned(), ..Record::default() };
-    Entry { id: format!("id of {name}"), record, bytes: 10 }
+    StoredSnapshot { id: format!("id of {name}"), record, bytes: 10 }
 }
 
 fn strip(names: &[&str]) -> Strip {
@@ -52,19 +52,19 @@ fn flipping_ends_at_the_oldest_and_at_the_live_picture() {
 fn deleted_snapshots_come_back_to_their_places() {
     let mut strip = strip(&["a", "b", "c"]);
     strip.show(Some(0));
-    assert!(matches!(strip.delete(), Some(Job::Delete(id)) if id == "id of a"));
+    assert!(matches!(strip.delete(), Some(DiskJob::Delete(id)) if id == "id of a"));
     assert_eq!(shown(&strip), "b");
     strip.show(Some(1));
     strip.delete();
     assert_eq!((shown(&strip), names(&strip)), ("live", vec!["b"]));
     assert_eq!(strip.last_deleted(), Some("c"));
-    assert!(matches!(strip.undo_delete(), Some(Job::Restore(id)) if id == "id of c"));
+    assert!(matches!(strip.undo_delete(), Some(DiskJob::Restore(id)) if id == "id of c"));
     assert_eq!(shown(&strip), "c");
     strip.undo_delete();
     assert_eq!((shown(&strip), names(&strip)), ("a", vec!["a", "b", "c"]));
     assert!(strip.undo_delete().is_none());
     strip.delete();
-    assert!(matches!(strip.forget_deleted(), Some(Job::Forget(ids)) if ids == ["id of a"]));
+    assert!(matches!(strip.forget_deleted(), Some(DiskJob::Forget(ids)) if ids == ["id of a"]));
     assert!(strip.undo_delete().is_none() && strip.forget_deleted().is_none());
 }
 
@@ -77,7 +77,7 @@ fn names_and_notes_are_cleaned_and_written_once() {
     record.name = format!("  x\ny{} ", "z".repeat(500));
     record.note = "good".to_owned();
     let jobs = strip.edited();
-    let [Job::Describe(id, record)] = &jobs[..] else { panic!("one job") };
+    let [DiskJob::Describe(id, record)] = &jobs[..] else { panic!("one job") };
     assert_eq!((id.as_str(), record.note.as_str()), ("id of b", "good"));
     assert!(record.name.starts_with("x yz") && record.name.chars().count() == LONGEST_NAME);
     assert!(strip.edited().is_empty());
@@ -91,7 +91,7 @@ fn names_and_notes_are_cleaned_and_written_once() {
 fn the_picture_shown_is_read_first_and_then_its_neighbors() {
     let mut strip = strip(&["a", "b", "c", "d"]);
     let wanted = |strip: &Strip| match strip.wanted() {
-        Some(Job::Read(entry)) => entry.record.name,
+        Some(DiskJob::Read(entry)) => entry.record.name,
         _ => String::new(),
     };
     assert_eq!(wanted(&strip), "", "the live picture needs none");

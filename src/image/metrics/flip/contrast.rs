@@ -6,17 +6,17 @@ use super::filter::{across, down};
 
 /// A Gaussian a √(π/b) exp(−π² x² / b) of x degrees.
 #[derive(Clone, Copy)]
-struct Lobe {
+struct GaussianTerm {
     a: f64,
     b: f64,
 }
 
 /// The paper's fits of measured contrast sensitivity: lightness, red against green, and yellow
 /// against blue, which is a sum of two.
-const LOBES: [&[Lobe]; 3] = [
-    &[Lobe { a: 1.0, b: 0.0047 }],
-    &[Lobe { a: 1.0, b: 0.0053 }],
-    &[Lobe { a: 34.1, b: 0.04 }, Lobe { a: 13.5, b: 0.025 }],
+const LOBES: [&[GaussianTerm]; 3] = [
+    &[GaussianTerm { a: 1.0, b: 0.0047 }],
+    &[GaussianTerm { a: 1.0, b: 0.0053 }],
+    &[GaussianTerm { a: 34.1, b: 0.04 }, GaussianTerm { a: 13.5, b: 0.025 }],
 ];
 
 /// The widest b of all lobes, which decides where all kernels end.
@@ -56,8 +56,8 @@ impl Contrast {
 }
 
 /// Kernels that together leave a constant as it is.
-fn kernels(lobes: &[Lobe], radius: i32, pixels_per_degree: f64) -> Vec<Kernel> {
-    let kernel = |lobe: &Lobe| {
+fn kernels(lobes: &[GaussianTerm], radius: i32, pixels_per_degree: f64) -> Vec<Kernel> {
+    let kernel = |lobe: &GaussianTerm| {
         let taps: Vec<f64> = (-radius..=radius)
             .map(|x| (-(PI * f64::from(x) / pixels_per_degree).powi(2) / lobe.b).exp())
             .collect();

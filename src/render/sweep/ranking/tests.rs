@@ -8,13 +8,13 @@ use crate::transport::strategy::Strategy;
 const SUBSUMED: &str = "ratio tracking collects it";
 
 /// Variance × time of 1 with a standard error of `error` is that of `cost` times as much.
-fn side(cost: f64, error: f64) -> Side {
-    Side {
+fn side(cost: f64, error: f64) -> SideFigures {
+    SideFigures {
         fewest_samples: 2,
         variance_of_mean: Some(cost / 3.0),
         variance_error: Some(error * cost / 3.0),
         cpu_seconds: 3.0,
-        ..Side::default()
+        ..SideFigures::default()
     }
 }
 
@@ -42,7 +42,7 @@ fn ranking(error: f64) -> Ranking {
         Toggle::ALL.into_iter().filter(counts).fold(7.0, |cost, toggle| cost / gain(toggle))
     };
     let figures = |trial: &Trial| {
-        (trial.source == Source::Rendered).then(|| side(cost(&trial.strategy), error))
+        (trial.source == TrialSource::Rendered).then(|| side(cost(&trial.strategy), error))
     };
     let sides: Vec<_> = trials.iter().map(figures).collect();
     Ranking::new(&trials, &sides)
@@ -55,13 +55,13 @@ fn close(a: f64, b: f64) -> bool {
 #[test]
 fn the_fastest_is_first_and_twins_stand_together() {
     let ranking = ranking(0.01);
-    let kinds: Vec<Kind> = ranking.entries.iter().map(|entry| entry.trial.kind).collect();
-    assert_eq!(kinds[0], Kind::Without(Toggle::MajorantBoost));
-    let full = kinds.iter().position(|kind| *kind == Kind::Full).unwrap();
+    let kinds: Vec<TrialKind> = ranking.entries.iter().map(|entry| entry.trial.kind).collect();
+    assert_eq!(kinds[0], TrialKind::Without(Toggle::MajorantBoost));
+    let full = kinds.iter().position(|kind| *kind == TrialKind::Full).unwrap();
     let mut equals = kinds[full..full + 3].to_vec();
-    equals.retain(|kind| *kind != Kind::Without(Toggle::FireAsLight));
-    assert_eq!(equals, [Kind::Full, Kind::Without(Toggle::EmissionDecoupling)]);
-    assert_eq!(kinds.last(), Some(&Kind::Alone(Toggle::MajorantBoost)));
+    equals.retain(|kind| *kind != TrialKind::Without(Toggle::FireAsLight));
+    assert_eq!(equals, [TrialKind::Full, TrialKind::Without(Toggle::EmissionDecoupling)]);
+    assert_eq!(kinds.last(), Some(&TrialKind::Alone(Toggle::MajorantBoost)));
     let ratios = ranking.entries.iter().map(|entry| entry.over_baseline.unwrap().ratio);
     assert!(ratios.is_sorted_by(|a, b| a >= b));
 }
@@ -79,8 +79,8 @@ fn figures_are_quotients_of_variance_and_time() {
     let speed_up = best.over_baseline.unwrap();
     assert!(close(speed_up.log_error, (2.0 * error * error + 0.03 * 0.03).sqrt()));
     let find = |kind| *ranking.entries.iter().find(|entry| entry.trial.kind == kind).unwrap();
-    assert!(close(find(Kind::Full).over_best.unwrap().ratio, 0.8));
-    assert!(close(find(Kind::Baseline).over_best.unwrap().ratio, 1.0 / 30.0));
+    assert!(close(find(TrialKind::Full).over_best.unwrap().ratio, 0.8));
+    assert!(close(find(TrialKind::Baseline).over_best.unwrap().ratio, 1.0 / 30.0));
 }
 
 #[test]
@@ -110,7 +110,7 @@ fn what_cannot_be_told_apart_is_said_to_be() {
         (ranking.best().unwrap().trial.kind, headline(&ranking), remarks(&ranking))
     };
     let (kind, headline, remarks) = of(0.01);
-    assert_eq!(kind, Kind::Without(Toggle::MajorantBoost));
+    assert_eq!(kind, TrialKind::Without(Toggle::MajorantBoost));
     let expected = "Leave on full without majorant boost: 1/30 of baseline's time for \
                     the same noise";
     assert_eq!(headline, expected);
@@ -123,14 +123,14 @@ fn what_cannot_be_told_apart_is_said_to_be() {
     assert_eq!(remarks, expected);
 
     let (kind, headline, remarks) = of(0.1);
-    assert_eq!(kind, Kind::Full);
+    assert_eq!(kind, TrialKind::Full);
     assert!(headline.starts_with("Leave on full: about 1/25"), "{headline}");
     let expected = "As good within what is known: full without majorant boost and full without \
                     fire as a light";
     assert_eq!(remarks[0], expected);
 
     let (kind, _, remarks) = of(0.5);
-    assert_eq!(kind, Kind::Without(Toggle::MajorantBoost));
+    assert_eq!(kind, TrialKind::Without(Toggle::MajorantBoost));
     assert!(remarks[0].starts_with("Too early to tell from it: full"), "{remarks:?}");
 }
 
@@ -151,20 +151,20 @@ fn without_figures_there_is_nothing_to_rank() {
 
     // It can't be rendered, so that nobody waits for it.
     let mut trials = trials;
-    trials[0].source = Source::Refused("on purpose");
+    trials[0].source = TrialSource::Refused("on purpose");
     let ranking = Ranking::new(&trials, &sides);
     let text = headline(&ranking);
     assert!(text.contains("emission ratio tracking alone: the fastest"), "{text}");
-    assert_eq!(ranking.entries.last().unwrap().trial.kind, Kind::Baseline);
+    assert_eq!(ranking.entries.last().unwrap().trial.kind, TrialKind::Baseline);
 }
 
 #[test]
 fn no_noise_is_less_than_any() {
     let trials = plan(&Strategy::default(), &idle);
     let mut sides = vec![Some(side(1.0, 0.01)); trials.len()];
-    sides[1] = Some(Side { variance_of_mean: Some(0.0), ..side(1.0, 0.0) });
+    sides[1] = Some(SideFigures { variance_of_mean: Some(0.0), ..side(1.0, 0.0) });
     let ranking = Ranking::new(&trials, &sides);
-    assert_eq!(ranking.best().unwrap().trial.kind, Kind::Full);
+    assert_eq!(ranking.best().unwrap().trial.kind, TrialKind::Full);
     assert_eq!(headline(&ranking), "Leave on full: no noise");
 }
 

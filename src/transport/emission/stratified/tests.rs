@@ -10,13 +10,13 @@ use crate::volume::emission::Emission;
 use crate::volume::field::{RgbField, ScalarField};
 use crate::volume::procedural::Noise;
 use crate::volume::world::{Instance, World};
-use crate::volume::{Substance, Volume};
+use crate::volume::{MediumProperties, Volume};
 
 /// Largest |z|: of the 108 comparisons here one fails by chance once in 16 000 sets of jitters.
 const Z_LIMIT: f64 = 5.0;
 /// Walks of which a mean is taken.
 const WALKS: u32 = 40_000;
-const ERRANDS: [Errand; 3] = [Errand::Camera, Errand::Scattered, Errand::Light];
+const ERRANDS: [RayKind; 3] = [RayKind::Camera, RayKind::Scattered, RayKind::Light];
 /// Looks along the brightest chord: as few as the majorants allow, so that looks and combs have
 /// the same pace where they read as often, and a few more.
 const LOOKS: [f32; 2] = [0.0, 64.0];
@@ -28,9 +28,10 @@ fn noise(seed: u32) -> ScalarField {
 /// Noise of high contrast in cells far larger than its details.
 fn medium(density_scale: Rgb, emission: Emission) -> Instance {
     let albedo = RgbField::Constant(Rgb::ZERO);
-    let substance = Substance { density: noise(5), density_scale, albedo, g: 0.0, emission };
+    let properties =
+        MediumProperties { density: noise(5), density_scale, albedo, g: 0.0, emission };
     let bounds = Aabb::centered(Vec3A::ONE);
-    let volume = Volume::varying(bounds, substance, Vec3A::splat(0.45), None);
+    let volume = Volume::varying(bounds, properties, Vec3A::splat(0.45), None);
     Instance::new(Arc::new(volume), Affine3A::IDENTITY)
 }
 
@@ -40,25 +41,25 @@ fn expected(instance: &Instance, ray: &Ray) -> [DVec3; 2] {
     let region = instance.volume().region();
     let (t0, t1) = region.intersect(ray, f32::INFINITY).unwrap();
     let length = f64::from(t1 - t0) / f64::from(STEPS);
-    let (mut glow, mut transmittance) = (DVec3::ZERO, DVec3::ONE);
+    let (mut gathered, mut transmittance) = (DVec3::ZERO, DVec3::ONE);
     for i in 0..STEPS {
         let point = ray.at((f64::from(t0) + (f64::from(i) + 0.5) * length) as f32);
-        let c = instance.volume().substance().at(point);
+        let c = instance.volume().properties().at(point);
         let half = (-0.5 * length * c.mu_t.as_dvec3()).exp();
-        glow += length * transmittance * half * c.emission.as_dvec3();
+        gathered += length * transmittance * half * c.emission.as_dvec3();
         transmittance *= half * half;
     }
-    [glow, transmittance]
+    [gathered, transmittance]
 }
 
 /// One walk with the numbers of a path of its own, spread evenly as in a render.
-fn walk(world: &World, ray: Ray, looks: f32, errand: Errand, index: u32) -> [DVec3; 2] {
+fn walk(world: &World, ray: Ray, looks: f32, ray_kind: RayKind, index: u32) -> [DVec3; 2] {
     let mut rng = PathRng::stratified(u64::from(index), UVec2::ZERO, 0);
-    if errand != Errand::Camera {
+    if ray_kind != RayKind::Camera {
         rng.enter_vertex(1);
     }
-    let glow = gather(world.along(ray, f32::INFINITY), looks, errand, &mut rng);
-    [glow.emission.as_dvec3(), glow.transmittance.as_dvec3()]
+    let gathered = gather(world.along(ray, f32::INFINITY), looks, ray_kind, &mut rng);
+    [gathered.emission.as_dvec3(), gathered.transmittance.as_dvec3()]
 }
 
 fn check(density_scale: Rgb, emission: Emission) {
@@ -66,10 +67,10 @@ fn check(density_scale: Rgb, emission: Emission) {
     let ray = Ray::new(Vec3A::new(-1.6, 0.11, -0.23), Vec3A::new(1.0, 0.06, 0.04).normalize());
     let expected = expected(&instance, &ray);
     let world = World::new(vec![instance]);
-    for (errand, looks) in ERRANDS.into_iter().flat_map(|e| LOOKS.map(|looks| (e, looks))) {
+    for (ray_kind, looks) in ERRANDS.into_iter().flat_map(|e| LOOKS.map(|looks| (e, looks))) {
         let (mut sums, mut squares) = ([DVec3::ZERO; 2], [DVec3::ZERO; 2]);
         for index in 0..WALKS {
-            for (i, value) in walk(&world, ray, looks, errand, index).into_iter().enumerate() {
+            for (i, value) in walk(&world, ray, looks, ray_kind, index).into_iter().enumerate() {
                 sums[i] += value;
                 squares[i] += value * value;
             }
@@ -84,7 +85,7 @@ fn check(density_scale: Rgb, emission: Emission) {
                 let error = variance[channel].sqrt().hypot(2e-4 * expected);
                 let z = (mean - expected) / error;
                 let label = format!(
-                    "{what} of {density_scale}, {errand:?}, {looks} looks, channel {channel}: \
+                    "{what} of {density_scale}, {ray_kind:?}, {looks} looks, channel {channel}: \
                      {mean:.6} ± {error:.6}, expected {expected:.6}, z {z:.2}"
                 );
                 println!("{label}");

@@ -3,7 +3,7 @@
 use glam::{UVec2, Vec2};
 
 use crate::transport::observer::Observer;
-use crate::transport::path::Aids;
+use crate::transport::path::PathContext;
 use crate::transport::scene::Scene;
 use crate::transport::{PathSample, path};
 use crate::{
@@ -15,13 +15,13 @@ use crate::{
 const SEED: u64 = 0x6f70_7469_6d61_6c21;
 
 /// A pixel and two rays through it.
-pub(in crate::transport) struct Site<'s> {
+pub(in crate::transport) struct PilotPixel<'s> {
     pub(in crate::transport) scene: &'s Scene,
     pixel: UVec2,
     pub(in crate::transport) rays: [Ray; 2],
 }
 
-impl<'s> Site<'s> {
+impl<'s> PilotPixel<'s> {
     /// Number `index` of a sequence that covers the film evenly (Roberts 2018, R₂).
     pub(in crate::transport) fn new(scene: &'s Scene, size: UVec2, index: u32) -> Self {
         const STEP: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_2];
@@ -54,12 +54,12 @@ impl<'s> Site<'s> {
     /// A path along one of the rays.
     pub(in crate::transport) fn path(
         &self,
-        aids: Aids<'_>,
+        context: PathContext<'_>,
         ray: usize,
         number: u32,
         observer: &mut impl Observer,
     ) -> PathSample {
-        path::trace(self.scene, aids, self.rays[ray], &mut self.rng(number), observer)
+        path::trace(self.scene, context, self.rays[ray], &mut self.rng(number), observer)
     }
 }
 
