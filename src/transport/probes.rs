@@ -86,7 +86,7 @@ impl Probes {
         let octree = Octree::new(&bounds);
         let cube = octree.bounds();
         let builder =
-            Builder { scene, emission_estimator: EmissionEstimator::at_a_glance(), scattering };
+            Builder { scene, emission_estimator: EmissionEstimator::coarse(), scattering };
         let first = builder.probe(0, &cube);
         let scattered = airlight::scattered_share(scene);
         let mut probes = Self {

@@ -8,7 +8,7 @@ use super::{
     distance::{self, Allocation},
     probes::{DistancePdf, Probes},
     scene::Scene,
-    tracking::{EmissionGathering, exp_neg},
+    tracking::{event::EmissionGathering, exp_neg},
 };
 use crate::{
     light::Receiver,

@@ -70,7 +70,7 @@ fn learned(
     };
     let strategy = Strategy { advanced, ..Preset::Full.strategy() };
     let scene = Scene { max_scatters: turns, strategy, ..scene.clone() };
-    let emission_estimator = EmissionEstimator::at_a_glance();
+    let emission_estimator = EmissionEstimator::coarse();
     let brightness = Brightness::default();
     let context = PathContext {
         emission_estimator: &emission_estimator,

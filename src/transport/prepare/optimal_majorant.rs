@@ -9,7 +9,8 @@ use glam::UVec2;
 
 use super::pilot_pixel::{PilotPixel, half_square};
 use crate::math::luminance;
-use crate::transport::emission::{EmissionEstimator, RayKind};
+use crate::transport::emission::EmissionEstimator;
+use crate::transport::emission::ray::RayKind;
 use crate::transport::observer::Nobody;
 use crate::transport::path::PathContext;
 use crate::transport::probes::Brightness;

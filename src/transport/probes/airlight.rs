@@ -12,7 +12,7 @@ use crate::{
     transport::{
         scene::Scene,
         strategy::Preset,
-        tracking::{self, Event},
+        tracking::{event::Event, scattering::scatter},
     },
 };
 
@@ -58,7 +58,7 @@ fn scattered_of(scene: &Scene, emitter: &Emitter, rng: &mut PathRng) -> f32 {
     let t_max = end.map_or(f32::INFINITY, |end| size + end.hit.t);
     let medium = scene.world.along(Ray::new(origin, direction), t_max);
     let strategy = Preset::Full.strategy();
-    let flight = tracking::scatter(medium, &strategy, Rgb::ONE, rng.exponential(), rng);
+    let flight = scatter(medium, &strategy, Rgb::ONE, rng.exponential(), rng);
     match flight.event {
         Event::Scattered { .. } => mean(flight.weight),
         _ => 0.0,

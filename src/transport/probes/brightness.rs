@@ -60,7 +60,7 @@ fn light_along(probes: &Probes, scene: &Scene, size: UVec2, index: u32) -> [f32;
     };
     let mut rng = PathRng::new(SEED, UVec2::new(index, 1), 0);
     let (emission_estimator, choice) =
-        (EmissionEstimator::at_a_glance(), direct::choice(&scene.strategy));
+        (EmissionEstimator::coarse(), direct::choice(&scene.strategy));
     let look = direct::sample_lights(scene, &emission_estimator, &vertex, &choice, &mut rng);
     let reflected = luminance(look.light)
         * distance_pdf.map_or(1.0, |distance_pdf| distance_pdf.transmittance());

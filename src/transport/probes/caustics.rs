@@ -48,7 +48,7 @@ impl Probes {
         }
         let tracer = PhotonTracer {
             scene,
-            emission_estimator: EmissionEstimator::at_a_glance(),
+            emission_estimator: EmissionEstimator::coarse(),
             probes: self,
             volumes,
         };
