@@ -254,6 +254,8 @@ impl<'g> GuidedDistances<'g> {
 
 #[cfg(test)]
 mod tests {
+    use crate::error::NO_PROGRESS;
+    use crate::transport::prepare;
     use glam::UVec2;
 
     use super::*;
@@ -377,7 +379,7 @@ mod tests {
     #[test]
     fn weights_divide_by_the_mixture_of_what_draws() {
         let scene = Scene::of_text(SMOKE);
-        let probes = Probes::new(&scene).unwrap();
+        let probes = prepare::probes(&scene, NO_PROGRESS).unwrap().unwrap();
         let scatter_probability = ScatterProbability::Even;
         let advanced = Advanced { scatter_probability, ..Advanced::default() };
         let strategy = Strategy { advanced, ..scene.strategy };

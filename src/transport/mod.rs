@@ -9,7 +9,7 @@ mod guiding;
 mod march;
 pub mod observer;
 pub mod path;
-mod prepare;
+pub mod prepare;
 pub mod probes;
 pub mod profile;
 mod sample;
@@ -22,6 +22,6 @@ mod transmittance;
 pub mod vertex;
 mod weight_window;
 
-pub use frame::Frame;
-pub use sample::{PathSample, PixelSampler};
+pub use frame::{Frame, PreparedFrame};
+pub use sample::{PathSample, PixelSampler, Prepared, SampleNumber};
 pub use scene::Scene;

@@ -9,6 +9,7 @@ use super::fill::fill;
 use super::majorant::EmissionMajorant;
 use super::scattering::{Scattering, scatter};
 use super::*;
+use crate::error::NO_PROGRESS;
 use crate::math::{Aabb, Ray, mean};
 use crate::transport::strategy::{Preset, Strategy};
 use crate::volume::emission::Emission;
@@ -60,7 +61,8 @@ fn smoke(density: Rgb, albedo: Rgb, emission: Emission) -> World {
         g: 0.5,
         emission,
     };
-    let volume = Volume::varying(Aabb::centered(Vec3A::ONE), properties, Vec3A::splat(0.25), None);
+    let (bounds, cells) = (Aabb::centered(Vec3A::ONE), Vec3A::splat(0.25));
+    let volume = Volume::varying(bounds, properties, cells, None, NO_PROGRESS).unwrap();
     World::new(vec![Instance::new(Arc::new(volume), Affine3A::IDENTITY)])
 }
 
