@@ -11,6 +11,7 @@ pub mod medium;
 pub mod phase;
 pub mod procedural;
 pub mod vdb;
+#[allow(clippy::module_inception, reason = "the folder is named after its main type")]
 mod volume;
 pub mod world;
 
