@@ -97,7 +97,7 @@ fn snapshot(info: &Info) -> String {
         report.row("note", note);
     }
     let Some(header) = &info.header else {
-        report.row("note", "not written by Flambeau, so it cannot be continued");
+        report.row("note", "not written by Flambeau, so it cannot be resumed");
         return report.0;
     };
     report.row("version", &header.version);

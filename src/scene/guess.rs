@@ -129,7 +129,7 @@ pub(super) fn guess(file: &Arc<VolumeFile>, progress: Progress) -> Result<Guess>
     settings.camera = default_camera(&settings, &world_bounds);
     if glow.is_none() {
         daylight(&mut settings);
-        notes.push(Note::new(About::Light, "nothing glows, so there is a sun and a sky"));
+        notes.push(Note::new(About::Light, "nothing emits light, so a sun and a sky were added"));
     }
     settings.volume.push(volume);
     Ok(Guess { settings, notes })
@@ -159,7 +159,8 @@ fn nothing_to_see(file: &VolumeFile) -> Error {
         "there are no grids in this file; export it again".to_owned()
     } else {
         format!(
-            "no grid can be shown as fog or fire: {}; export a fog volume with values above zero",
+            "no grid can be rendered as smoke or fire: {}; export a fog volume with values above \
+             zero",
             grids.join(", ")
         )
     };
@@ -182,8 +183,8 @@ pub(super) fn grid_bounds(grid: &PlacedGrid) -> Option<Aabb> {
 /// Programs have habits; files of none of them stand on the ground of one of the axes.
 fn is_y_up(file: &VolumeFile, bounds: &Aabb, notes: &mut Vec<Note>) -> bool {
     let (is_y_up, why) = match Program::of(file.directory()) {
-        Some(program) => (program.up() == Axis::Y, format!("{} wrote it", program.name())),
-        None => (stands_on_y(bounds), "from where it stands".to_owned()),
+        Some(program) => (program.up() == Axis::Y, format!("exported by {}", program.name())),
+        None => (stands_on_y(bounds), "from its position".to_owned()),
     };
     let axis = if is_y_up { "y" } else { "z" };
     notes.push(Note::new(About::UpAxis, format!("{axis} is up ({why})")));
@@ -215,13 +216,13 @@ fn density_settings(
     notes: &mut Vec<Note>,
 ) -> DensitySettings {
     let Some(density) = density else {
-        notes.push(Note::new(About::Density, "there is no density, only fire"));
+        notes.push(Note::new(About::Density, "no density grid, only fire"));
         return DensitySettings { grid: None, scale: Color::Gray(0.0) };
     };
     let depths = columns(&density.grid, bounds, axis, |value| value.x.max(0.0));
     let scale = quantile(&depths, FAIRLY).map_or(1.0, |depth| two_digits(wanted_depth / depth));
     let name = &density.grid.name;
-    let text = format!("\"{name}\" is the density, made {scale} times as thick");
+    let text = format!("\"{name}\" is the density (density × {scale})");
     notes.push(Note::new(About::Density, text));
     DensitySettings { grid: Some(name.clone()), scale: Color::Gray(scale) }
 }

@@ -44,21 +44,21 @@ use crate::transport::strategy::Strategy;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Settings {
-    /// Where the picture is taken from.
+    /// The camera.
     pub camera: CameraSettings,
-    /// The picture itself.
+    /// The film: render size, seed and samples.
     pub film: FilmSettings,
-    /// How far paths go.
+    /// The length of paths.
     pub path: PathSettings,
-    /// The light that comes from everywhere around.
+    /// The sky: light from all directions.
     pub environment: EnvironmentSettings,
     /// Fire, smoke, fog and clouds. Where they overlap, they add.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub volume: Vec<VolumeSettings>,
-    /// Lights beside the fire itself.
+    /// Lights besides the fire itself.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub light: Vec<LightSettings>,
-    /// Solid things: floors, walls, spheres, boxes.
+    /// Surfaces: floors, walls, spheres, boxes.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub surface: Vec<SurfaceSettings>,
     /// Which sampling strategies are on.

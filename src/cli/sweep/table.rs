@@ -241,5 +241,5 @@ fn aligned(heads: &[&str], rows: &[&[String]]) -> String {
 /// The options that lead another command to the toggles of a strategy, each with a space before.
 pub fn toggles_in_words(strategy: &Strategy) -> String {
     let set = |toggle: Toggle| format!(" --set {}={}", toggle.key(), toggle.is_on(strategy));
-    Toggle::ALL.map(set).concat()
+    Toggle::all().map(set).collect()
 }

@@ -30,16 +30,16 @@ pub(super) fn emission_settings(
             emission.normalize = Some(Normalize::T4);
             let scale = kelvin_scale(candidate.max);
             emission.kelvin_scale = Some(scale);
-            format!("a temperature, {scale} kelvin a unit")
+            format!("a temperature (temperature × {scale} K)")
         }
         Role::Flame => {
             emission.mode = EmissionMode::Ramp;
             emission.stops = Some(flame_stops(candidate.max));
-            "flame, through a ramp of colors".to_owned()
+            "the flame, through a color ramp".to_owned()
         }
         Role::Emission | Role::Density => {
             emission.mode = EmissionMode::Grid;
-            "the emission itself".to_owned()
+            "the emission".to_owned()
         }
     };
     notes.push(Note::new(About::Glow, format!("\"{name}\" is {what}")));
