@@ -5,7 +5,8 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::{Exit, Refusal, print};
+use super::console::print;
+use super::exit::{Exit, Refusal};
 use crate::error::{NO_PROGRESS, Result};
 use crate::image::exr::{Info, read_info};
 use crate::scene::settings::VolumeSettings;

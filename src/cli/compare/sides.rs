@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use crate::cli::scene_source::quoted;
+use crate::cli::values::quoted;
 use crate::error::{Error, Result};
 use crate::scene::{self, Overrides, Settings};
 use crate::transport::strategy::Preset;

@@ -5,7 +5,8 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use crate::cli::compare::{SpeedUpRow, put};
+use crate::cli::outputs::write_text;
+use crate::cli::speed_up_row::SpeedUpRow;
 use crate::error::{Error, Result};
 use crate::format::{percent, rounded};
 use crate::render::compare::{SideFigures, SpeedUp};
@@ -137,8 +138,8 @@ impl SweepTable {
         let path = folder.join("table.json");
         let json = serde_json::to_string_pretty(self)
             .map_err(|e| Error::invalid(path.display().to_string(), "", e.to_string()))?;
-        put(&path, &format!("{json}\n"))?;
-        put(&folder.join("table.txt"), &self.text())
+        write_text(&path, &format!("{json}\n"))?;
+        write_text(&folder.join("table.txt"), &self.text())
     }
 }
 
