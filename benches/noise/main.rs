@@ -10,12 +10,14 @@ mod measure;
 mod rows;
 mod scenes;
 mod table;
+mod which;
 
 use clap::Parser;
 
 use measure::Plan;
-use rows::{Row, Table};
+use rows::Row;
 use scenes::BenchScene;
+use which::Table;
 
 #[derive(Parser)]
 #[command(name = "noise", about = "Variance and cost of each strategy, scene by scene")]

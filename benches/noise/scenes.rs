@@ -8,7 +8,7 @@ use flambeau::{
     transport::Scene,
 };
 
-use super::rows::Table;
+use super::which::Table;
 
 /// A scene of the tables.
 #[derive(Clone, Copy)]
