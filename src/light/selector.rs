@@ -2,7 +2,10 @@
 
 use glam::Vec3A;
 
-use super::{By, Light, LightTree, MOST_IMPORTANT, Receiver};
+use super::choice::By;
+use super::emitter::{MOST_IMPORTANT, Receiver};
+use super::kinds::Light;
+use super::tree::LightTree;
 use crate::{math::luminance, volume::world::World};
 
 /// Chooses among some of a scene's lights, by their index in the scene.
