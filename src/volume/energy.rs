@@ -10,9 +10,9 @@ use std::f32::consts::TAU;
 use glam::{DVec3, IVec3, Vec3A};
 use rayon::prelude::*;
 
-use super::Region;
 use super::cells::CellGrid;
 use super::majorant::MajorantGrid;
+use super::region::Region;
 use crate::{
     math::{Aabb, Ray},
     sampling::warp::spherical,

@@ -10,8 +10,10 @@ pub mod majorant;
 pub mod medium;
 pub mod phase;
 pub mod procedural;
+mod region;
 pub mod vdb;
 mod volume;
 pub mod world;
 
-pub use volume::{CoefficientBounds, MediumProperties, Region, Volume};
+pub use region::Region;
+pub use volume::{CoefficientBounds, MediumProperties, Volume};
