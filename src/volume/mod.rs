@@ -6,14 +6,14 @@ pub mod emission;
 pub mod energy;
 pub mod field;
 pub mod grid;
+mod local_volume;
 pub mod majorant;
 pub mod medium;
 pub mod phase;
 pub mod procedural;
 mod region;
 pub mod vdb;
-mod volume;
 pub mod world;
 
+pub use local_volume::{CoefficientBounds, MediumProperties, Volume};
 pub use region::Region;
-pub use volume::{CoefficientBounds, MediumProperties, Volume};

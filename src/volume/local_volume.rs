@@ -1,4 +1,4 @@
-//! One volume in its own space: where it is, what it holds and how large that gets.
+//! A volume in its own space: its region, its medium and the bounds of that.
 
 use glam::{IVec3, Vec3A};
 
@@ -12,7 +12,7 @@ use super::{
 };
 use crate::math::{Aabb, Rgb, luminance};
 
-/// What a volume is made of. Coefficients are per unit of *world* length, whatever its placement.
+/// The properties of a medium. Coefficients are per unit of *world* length, whatever its placement.
 #[derive(Clone, Debug)]
 pub struct MediumProperties {
     /// The density field; μ_t = `density_scale` · value.
@@ -97,7 +97,7 @@ impl MediumProperties {
     }
 }
 
-/// One volume in its own space, ready to be placed any number of times.
+/// A volume in its own space, ready to be placed any number of times.
 #[derive(Clone, Debug)]
 pub struct Volume {
     region: Region,
@@ -150,17 +150,17 @@ impl Volume {
         Self { region, properties, bounds: CoefficientBounds::Cells(cells), voxel, chords, energy }
     }
 
-    /// Where it is.
+    /// The region that it takes.
     pub fn region(&self) -> &Region {
         &self.region
     }
 
-    /// What it is made of.
+    /// Its medium.
     pub fn properties(&self) -> &MediumProperties {
         &self.properties
     }
 
-    /// How large its coefficients get.
+    /// The bounds of its coefficients.
     pub fn bounds(&self) -> &CoefficientBounds {
         &self.bounds
     }
