@@ -177,9 +177,9 @@ fn show_progress(job: PairJob, interrupt: &AtomicBool) -> Result<RenderedPair> {
     const STEPS: u64 = 1000;
     let (spp, cpu_seconds) = (job.spp, job.cpu_seconds);
     let bar = progress_bar(STEPS);
-    let part = |account: &Usage| {
-        let by_samples = if spp > 0 { account.samples / f64::from(spp) } else { 0.0 };
-        let by_time = cpu_seconds.map_or(0.0, |end| account.cpu_seconds / end);
+    let part = |usage: &Usage| {
+        let by_samples = if spp > 0 { usage.samples / f64::from(spp) } else { 0.0 };
+        let by_time = cpu_seconds.map_or(0.0, |end| usage.cpu_seconds / end);
         by_samples.max(by_time).min(1.0)
     };
     let result = render_side_by_side(job, interrupt, &mut |[a, b]| {

@@ -1,11 +1,11 @@
-//! Layers: what a picture is made of and what it cost, one number or color a pixel.
+//! Layers of a picture: parts of its light, depth, and what it cost, one number or color a pixel.
 
 use glam::UVec2;
 use rayon::prelude::*;
 
+use super::coarse::shown_pixel;
 use super::estimate::PixelEstimate;
 use super::film::Film;
-use super::publish::shown_pixel;
 
 /// One thing that a film knows of each pixel beside its light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

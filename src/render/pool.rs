@@ -7,8 +7,9 @@ use std::sync::{Mutex, PoisonError};
 use glam::UVec2;
 use rayon::prelude::*;
 
+use super::coarse::representative;
 use super::film::{Film, Sums, TILE, Totals, add_sample, row_pixels};
-use super::schedule::{Work, representative};
+use super::schedule::Work;
 use super::thread_time::thread_seconds;
 use crate::error::{Error, Result};
 use crate::transport::PixelSampler;

@@ -4,10 +4,10 @@ use glam::UVec2;
 use rayon::prelude::*;
 
 use super::area::Area;
+use super::coarse::{representative, shown_pixel};
 use super::estimate::{FilmStats, LineStats, PixelEstimate, samples_per_pixel};
 use super::film::Film;
 use super::layers::{Layer, LayerMap};
-use super::schedule::{COARSEST_STRIDE, representative};
 
 /// A finished image of an unfinished render.
 #[derive(Clone, Debug, Default)]
@@ -77,16 +77,6 @@ pub struct RenderStats {
     pub guided_flights: Option<f32>,
     /// Whether the limit is reached.
     pub finished: bool,
-}
-
-/// The pixel to read in place of `pixel`: itself once it has a sample, or the one that stands for
-/// the smallest sampled block around it.
-pub fn shown_pixel(film: &Film, pixel: UVec2) -> UVec2 {
-    (0..=COARSEST_STRIDE.ilog2())
-        .map(|power| 1 << power)
-        .map(|stride| representative(pixel, stride, film.size()))
-        .find(|&candidate| film.samples(candidate) > 0)
-        .unwrap_or(pixel)
 }
 
 /// Reads the picture into `pixels`, which gets the size of the film; returns the noise (see

@@ -1,6 +1,6 @@
 //! How much faster one setting is than another, and the sentence that says so.
 
-use super::SideFigures;
+use super::side_figures::SideFigures;
 use crate::format::rounded;
 use crate::render::estimate::FEWEST_FOR_VARIANCE;
 
