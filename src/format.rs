@@ -17,6 +17,11 @@ pub fn percent(share: f64) -> String {
     format!("{} %", rounded(100.0 * share, 2))
 }
 
+/// `value` to two digits, as one would type it.
+pub fn two_digits(value: f32) -> f32 {
+    format!("{value:.1e}").parse().unwrap_or(value)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -27,5 +32,12 @@ mod tests {
         assert_eq!([1234.0, -0.000_12, 99.6].map(|x| rounded(x, 2)), ["1200", "-0.00012", "100"]);
         assert_eq!(rounded(1.234e-9, 3), "1.2e-9");
         assert_eq!((percent(0.018_34), percent(12.0)), ("1.8 %".to_owned(), "1200 %".to_owned()));
+    }
+
+    #[test]
+    fn numbers_are_rounded_as_typed() {
+        assert_eq!(two_digits(12.345), 12.0);
+        assert_eq!(two_digits(0.034_56), 0.035);
+        assert_eq!(two_digits(1234.0), 1200.0);
     }
 }

@@ -2,11 +2,11 @@
 
 use glam::Vec3A;
 
-use super::guess::two_digits;
 use super::settings::{
     CameraSettings, Color, Extent, LightKind, LightSettings, MaterialSettings, SurfaceSettings,
     SurfaceShape,
 };
+use crate::format::two_digits;
 use crate::math::Aabb;
 
 /// The irradiance that a new light brings to the middle of the picture.
