@@ -1,4 +1,4 @@
-//! What each strategy brings: variance at equal samples and at equal time, scene by scene.
+//! The worth of each strategy: variance at equal samples and at equal time, scene by scene.
 //!
 //! `cargo bench --bench noise -- [TABLE] [SCENE ...] [--quick]` prints a table per scene with one
 //! row per strategy: toggle upon toggle, or with `modes` the modes of the majorant boost by their

@@ -20,9 +20,9 @@ pub fn of(table: Table, scene: &BenchScene) -> Vec<Row> {
 
 /// A row of a table.
 pub struct Row {
-    /// What it is called.
+    /// Its name.
     pub name: String,
-    /// What is on.
+    /// The strategy that is measured.
     pub strategy: Strategy,
 }
 

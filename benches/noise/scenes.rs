@@ -1,4 +1,4 @@
-//! What is rendered: the scene files beside this one, those of other renderers, a shipped one.
+//! The scenes that are rendered: the scene files beside this one, those of other renderers, a shipped one.
 
 use std::path::{Path, PathBuf};
 
@@ -15,7 +15,7 @@ use super::which::Table;
 pub struct BenchScene {
     /// Its name in the tables and for filters.
     pub name: &'static str,
-    /// What it is there for.
+    /// Its purpose.
     pub shows: &'static str,
     /// The tables it is in.
     pub tables: &'static [Table],

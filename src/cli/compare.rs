@@ -24,6 +24,7 @@ use super::snapshot_header::header;
 use super::stats::Spent;
 use super::values::parse_seconds;
 use crate::error::{Error, Result};
+use crate::format;
 use crate::image::exr::SnapshotHeader;
 use crate::render::compare::Comparison;
 use crate::render::side_by_side::{PairJob, RenderedPair, render_side_by_side};
@@ -184,7 +185,8 @@ fn show_progress(job: PairJob, interrupt: &AtomicBool) -> Result<RenderedPair> {
     };
     let result = render_side_by_side(job, interrupt, &mut |[a, b]| {
         bar.set_position((0.5 * (part(a) + part(b)) * STEPS as f64) as u64);
-        bar.set_message(format!("A {:.1} spp · B {:.1} spp", a.samples, b.samples));
+        let [a, b] = [a, b].map(|usage| format::samples_per_pixel(usage.samples));
+        bar.set_message(format!("A {a} · B {b}"));
     });
     bar.finish_and_clear();
     result

@@ -20,6 +20,7 @@ use super::stats::{Spent, Stats};
 use super::values::parse_seconds;
 use crate::error::{Error, Result};
 use crate::files::Fingerprint;
+use crate::format;
 use crate::image::exr::{Snapshot, SnapshotHeader, read_snapshot};
 use crate::render::estimate::samples_per_pixel;
 use crate::render::schedule::Limits;
@@ -156,7 +157,7 @@ fn show_progress(job: RenderJob, interrupt: &AtomicBool) -> Result<Headless> {
         };
         let by_time = limits.seconds.map_or(0.0, |end| seconds / end);
         bar.set_position((by_samples.max(by_time) * STEPS as f64) as u64);
-        bar.set_message(format!("{samples:.1} spp"));
+        bar.set_message(format::samples_per_pixel(samples));
     });
     bar.finish_and_clear();
     result

@@ -55,7 +55,7 @@ impl SceneArguments {
         self.size
     }
 
-    /// What the scene is called on the command line.
+    /// The name of the scene on the command line.
     pub fn name(&self) -> &str {
         &self.scene
     }

@@ -1,4 +1,4 @@
-//! What the choice among lights goes by: emitters as the hierarchy sees them, and receivers.
+//! The arguments of the choice among lights: emitters as the hierarchy sees them, and receivers.
 
 use glam::Vec3A;
 
@@ -14,8 +14,8 @@ pub struct Emitter {
     pub bounds: Aabb,
     /// Radiant intensity, W/sr; a rough value will do. Without any it is never chosen.
     pub intensity: f32,
-    /// Of a light like a spot: the unit axis, and the cosine of the half angle about it outside
-    /// of which it sends nothing.
+    /// The cone outside of which a light like a spot sends nothing: its unit axis and the cosine of
+    /// its half angle.
     pub cone: Option<(Vec3A, f32)>,
 }
 

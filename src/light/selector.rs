@@ -166,7 +166,7 @@ impl Selector {
         }
     }
 
-    /// What all lights may bring.
+    /// The importance of all lights together.
     fn total(&self, to: &Receiver) -> f32 {
         self.suns.iter().map(|sun| sun.importance).sum::<f32>() + self.tree.importance(to)
     }

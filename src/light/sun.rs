@@ -35,7 +35,7 @@ impl Sun {
         self.to_sun
     }
 
-    /// What it brings to a plane across its direction.
+    /// Irradiance on a plane across its direction.
     pub fn irradiance(&self) -> Rgb {
         self.irradiance
     }

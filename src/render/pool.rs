@@ -34,7 +34,7 @@ pub struct Pool {
 pub struct Failure {
     /// The pixel and the sample in question; none where the render could not begin.
     pub at: Option<(UVec2, u32)>,
-    /// What went wrong.
+    /// The reason.
     pub message: String,
 }
 
@@ -58,7 +58,7 @@ impl std::fmt::Display for Failure {
     }
 }
 
-/// What became of a piece of work.
+/// The outcome of a piece of work.
 #[derive(Debug)]
 pub struct WorkOutcome {
     /// Counts of what was done, all of it or not.
@@ -136,7 +136,7 @@ fn rows_at_once(stride: u32) -> usize {
     (stride * stride / TILE).max(1) as usize
 }
 
-/// What was done of some rows.
+/// The outcome of some rows.
 struct Done {
     totals: Totals,
     cpu_seconds: f64,
@@ -157,7 +157,7 @@ impl Done {
     }
 }
 
-/// What is common to the rows of one piece of work.
+/// The values that the rows of one piece of work share.
 struct RowContext<'a> {
     sampler: &'a dyn PixelSampler,
     work: &'a Work,

@@ -36,7 +36,7 @@ pub struct Picture {
     pub stats: RenderStats,
 }
 
-/// What a picture brings along beside its light.
+/// The data that a picture brings along beside its light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Extras {
     /// One of its layers.
@@ -109,7 +109,7 @@ pub fn resolve_blocks(film: &Film, side: u32, pixels: &mut Vec<[f32; 4]>) {
     });
 }
 
-/// What the samples of `pixel` show; black without any.
+/// The color that the samples of `pixel` show; black without any.
 fn color(film: &Film, pixel: UVec2) -> [f32; 4] {
     PixelEstimate::of(film, pixel).map_or([0.0; 4], |estimate| rgba(&estimate, estimate.mean()))
 }

@@ -1,4 +1,4 @@
-//! What to sample next and when to show it: pure logic, no threads and no clocks.
+//! The order of samples, and the times at which they are shown: pure logic, no threads and no clocks.
 //!
 //! The first pass visits pixels coarse to fine. At stride s each block of s × s pixels is stood for
 //! by the pixel in its middle, sampled at its own position, so nothing is thrown away; the pixels
@@ -49,7 +49,7 @@ pub struct Work {
     pub area: Option<Area>,
 }
 
-/// What the schedule answers.
+/// The answer of the schedule.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Next {
     /// Do this.

@@ -60,7 +60,7 @@ struct Cells {
 }
 
 impl Energy {
-    /// Of a region that emits `emission`, lum ε, throughout; `None` if it emits nothing or has no
+    /// The distribution over a region that emits `emission`, lum ε, throughout; `None` if it emits nothing or has no
     /// finite volume.
     pub(super) fn uniform(region: Region, emission: f32) -> Option<Self> {
         let volume = match region {
@@ -78,7 +78,7 @@ impl Energy {
         })
     }
 
-    /// Of a volume whose `emission`, lum ε, is bounded by `majorants`; `None` if it emits nothing.
+    /// The distribution over a volume whose `emission`, lum ε, is bounded by `majorants`; `None` if it emits nothing.
     ///
     /// A cell's density is the mean of its emission and a small share of its upper bound, zero
     /// only where the upper bound is.

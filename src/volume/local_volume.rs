@@ -23,7 +23,7 @@ pub struct MediumProperties {
     pub albedo: RgbField,
     /// Mean cosine of its Henyey–Greenstein phase function.
     pub g: f32,
-    /// What it radiates.
+    /// The emission.
     pub emission: Emission,
 }
 

@@ -1,4 +1,4 @@
-//! What fills space. Light transport reads `medium` and asks `world`; the rest is behind them.
+//! Participating media. Light transport reads `medium` and asks `world`; the rest is behind them.
 
 pub mod blackbody;
 pub mod cells;

@@ -1,4 +1,4 @@
-//! What `--a` and `--b` say: a strategy in words.
+//! The values of `--a` and `--b`: strategies in words.
 
 use std::str::FromStr;
 

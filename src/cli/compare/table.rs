@@ -38,7 +38,7 @@ pub struct CompareTable {
 pub struct SideRow {
     #[serde(skip)]
     name: &'static str,
-    /// What the command line said.
+    /// The strategy as the command line names it.
     choice: String,
     strategy: Strategy,
     spp: f64,

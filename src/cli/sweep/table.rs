@@ -32,7 +32,7 @@ pub struct SweepTable {
     remarks: Vec<String>,
     /// The strategies, the fastest first.
     ranking: Vec<SweepTableRow>,
-    /// What each toggle brings.
+    /// The worth of each toggle.
     toggles: Vec<ToggleRow>,
 }
 
@@ -61,7 +61,7 @@ struct SweepTableRow {
     cells: [String; COLUMNS.len()],
 }
 
-/// What a toggle brings.
+/// The worth of a toggle.
 #[derive(Debug, Serialize)]
 struct ToggleRow {
     toggle: &'static str,
@@ -169,7 +169,7 @@ impl SweepTableRow {
     }
 }
 
-/// What a line of the ranking says. A twin's figures are written where it was rendered.
+/// The cells of a line of the ranking. A twin's figures are written where it was rendered.
 fn cells(entry: &RankedTrial, leave_on: bool) -> [String; COLUMNS.len()] {
     let mark = if leave_on { "* " } else { "  " };
     let name = format!("{mark}{}", entry.trial.kind.name());

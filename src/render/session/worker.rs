@@ -45,7 +45,7 @@ pub(super) struct Worker {
     spare: Vec<Arc<Picture>>,
 }
 
-/// What the render thread waits for.
+/// The event that the render thread waits for.
 #[derive(Clone, Copy, PartialEq)]
 enum Wait {
     Nothing,

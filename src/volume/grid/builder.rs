@@ -118,7 +118,7 @@ impl<V: Voxel> GridBuilder<V> {
         assemble(Parts { constants, leaves, regions, summary }, progress)
     }
 
-    /// Of each leaf its sums, and whether all its values are one.
+    /// The sums of each leaf, and whether all its values are one.
     fn summarize(&mut self, progress: Progress) -> Result<Vec<(GridSummary<V>, bool)>> {
         let background = self.background();
         let mut summaries = vec![(GridSummary::empty(), false); self.leaves.len()];

@@ -31,9 +31,9 @@ pub struct VdbGrid {
 /// The voxels of a grid.
 #[derive(Clone, Debug)]
 pub enum VdbValues {
-    /// Of a float or double grid.
+    /// The voxels of a float or double grid.
     Float(Arc<SparseGrid<f32>>),
-    /// Of a vec3s or vec3d grid.
+    /// The voxels of a vec3s or vec3d grid.
     Vec3(Arc<SparseGrid<Vec3A>>),
     /// Not loaded, for this reason.
     Unsupported(String),

@@ -236,7 +236,7 @@ struct Cursor<'w> {
     way: Crossing,
 }
 
-/// What a volume is crossed by.
+/// The way in which a ray crosses a volume.
 #[derive(Clone, Copy, Debug)]
 enum Crossing {
     /// At once, up to the end of a uniform volume.
