@@ -1,24 +1,27 @@
 //! A bare volume in place of a scene: what its grids are, which way is up, how thick and bright it
 //! should look, and where to look from. Every guess is an ordinary setting, and is told in words.
 
-mod glow;
+mod emission;
+mod note;
 mod probe;
 mod roles;
 
 use std::sync::Arc;
 
-use super::cache::{PlacedGrid, VolumeFile};
+use super::cache::VolumeFile;
 use super::conventions::{Program, upright};
+use super::describe::grid_bounds;
 use super::embedded::short_name;
-use super::frame::{bounds_in_world, frame};
+use super::frame::frame;
 use super::settings::{
     Albedo, Axis, CameraSettings, Color, DensitySettings, LightKind, LightSettings, PhaseSettings,
     Settings, VolumeSettings,
 };
 use crate::error::{Error, Progress, Result};
+use crate::format::two_digits;
 use crate::math::Aabb;
-pub(super) use probe::two_digits;
-use probe::{columns, quantile, visible_bounds};
+pub use note::{About, Note};
+use probe::{FAIRLY, columns, quantile, visible_bounds};
 use roles::Candidate;
 
 /// A scene made up for a bare volume.
@@ -28,40 +31,6 @@ pub struct Guess {
     pub settings: Settings,
     /// The guesses in words.
     pub notes: Vec<Note>,
-}
-
-/// What a guess is about.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum About {
-    /// Which axis of the file points up.
-    UpAxis,
-    /// Which grid is the density and how thick it is.
-    Density,
-    /// Which grid glows, and how.
-    Glow,
-    /// What lights a volume that does not glow.
-    Light,
-}
-
-/// A guess in words.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Note {
-    /// What it is about.
-    pub about: About,
-    /// What was guessed.
-    pub text: String,
-}
-
-impl Note {
-    fn new(about: About, text: impl Into<String>) -> Self {
-        Self { about, text: text.into() }
-    }
-}
-
-impl std::fmt::Display for Note {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "guessed: {}", self.text)
-    }
 }
 
 /// How a volume should look.
@@ -89,8 +58,6 @@ const FIRE_SMOKE: Appearance = Appearance { words: &[], depth: 4.0, albedo: 0.5,
 const SOOT: Appearance = Appearance { words: &[], depth: 0.4, albedo: 0.3, radiance: 0.9 };
 /// A density that is nowhere above this is soot, if there is fire.
 const SOOT_BELOW: f32 = 0.3;
-/// The lines of sight that count as fairly thick and fairly bright.
-const FAIRLY: f32 = 0.8;
 /// Makes up a scene for `file`.
 ///
 /// # Errors
@@ -98,16 +65,16 @@ const FAIRLY: f32 = 0.8;
 pub(super) fn guess(file: &Arc<VolumeFile>, progress: Progress) -> Result<Guess> {
     let grids = load(file, progress)?;
     let density = roles::density(&grids);
-    let glow = roles::glow(&grids);
+    let emission = roles::emission(&grids);
     let mut notes = Vec::new();
-    let seen: Vec<&Candidate> = density.into_iter().chain(glow.as_ref().map(|g| g.0)).collect();
+    let seen: Vec<&Candidate> = density.into_iter().chain(emission.map(|e| e.0)).collect();
     let Some(bounds) = bounds_of(&seen) else { return Err(nothing_to_see(file)) };
     let is_y_up = is_y_up(file, &bounds, &mut notes);
     // The line of sight of the default camera, in the file's own space.
     let axis = if is_y_up { 2 } else { 1 };
 
     let name = short_name(file.name());
-    let look = look_of(name, density, glow.is_some());
+    let look = look_of(name, density, emission.is_some());
     let mut volume = VolumeSettings {
         name: name.to_owned(),
         file: Some(file.name().to_owned()),
@@ -117,9 +84,9 @@ pub(super) fn guess(file: &Arc<VolumeFile>, progress: Progress) -> Result<Guess>
     };
     volume.rotate = upright(if is_y_up { Axis::Y } else { Axis::Z });
     volume.density = density_settings(density, look.depth, &bounds, axis, &mut notes);
-    if let Some((grid, role)) = glow {
+    if let Some((grid, role)) = emission {
         volume.emission =
-            glow::emission_settings(grid, role, look.radiance, &bounds, axis, &mut notes);
+            emission::emission_settings(grid, role, look.radiance, &bounds, axis, &mut notes);
     }
 
     let mut settings = Settings::default();
@@ -127,7 +94,7 @@ pub(super) fn guess(file: &Arc<VolumeFile>, progress: Progress) -> Result<Guess>
     let visible = visible.reduce(|a, b| a.union(&b)).unwrap_or(bounds);
     let world_bounds = visible.transformed(&super::assemble::world_from_file(&volume));
     settings.camera = default_camera(&settings, &world_bounds);
-    if glow.is_none() {
+    if emission.is_none() {
         daylight(&mut settings);
         notes.push(Note::new(About::Light, "nothing emits light, so a sun and a sky were added"));
     }
@@ -171,13 +138,6 @@ fn nothing_to_see(file: &VolumeFile) -> Error {
 fn bounds_of(grids: &[&Candidate]) -> Option<Aabb> {
     let boxes = grids.iter().filter_map(|candidate| grid_bounds(&candidate.grid));
     boxes.reduce(|a, b| a.union(&b))
-}
-
-/// The box around a grid's stored voxels, in the file's space.
-pub(super) fn grid_bounds(grid: &PlacedGrid) -> Option<Aabb> {
-    let bounds = grid.bounds()?;
-    let world_from_index = grid.world_from_index.as_affine3a();
-    Some(bounds_in_world(bounds.min.as_vec3(), bounds.max.as_vec3(), &world_from_index))
 }
 
 /// Programs have habits; files of none of them stand on the ground of one of the axes.

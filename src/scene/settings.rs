@@ -5,24 +5,11 @@
 //! bound every number of a key; `unit` names its unit; `default` is what an absent key means;
 //! `only` lists the choices (`shape = "sphere"`) that a key belongs to.
 
-/// A method for each optional key: its value, or the default that its schema names too.
-macro_rules! or_default {
-    (impl $settings:ty { $($key:ident: $type:ty = $default:expr;)* }) => {
-        impl $settings {
-            $(
-                #[doc = concat!("`", stringify!($key), "`, or its default.")]
-                pub fn $key(&self) -> $type {
-                    self.$key.unwrap_or($default)
-                }
-            )*
-        }
-    };
-}
-
 mod camera;
 mod emission;
 mod film;
 mod light;
+mod or_default;
 mod surface;
 mod values;
 mod volume;

@@ -25,7 +25,7 @@ pub fn show(
                 return;
             }
             let guessed = |role: Role, volume: &VolumeSettings| {
-                let about = if role == Role::Density { About::Density } else { About::Glow };
+                let about = if role == Role::Density { About::Density } else { About::Emission };
                 let note = notes.iter().find(|note| note.about == about)?;
                 let same = role.is_of(volume, &grid.name) && role.is_of(opened, &grid.name);
                 same.then_some(note)

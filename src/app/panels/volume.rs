@@ -140,7 +140,7 @@ fn stands(note: &Note, volume: &VolumeSettings, opened: &VolumeSettings) -> bool
     match note.about {
         About::UpAxis => volume.rotate == opened.rotate,
         About::Density => volume.density == opened.density,
-        About::Glow => {
+        About::Emission => {
             let of = |volume: &VolumeSettings| {
                 (volume.emission.mode, volume.emission.grid.clone(), volume.emission.kelvin_scale)
             };

@@ -1,14 +1,14 @@
 //! How much faster one setting is than another, and the sentence that says so.
 
-use super::SideFigures;
-use crate::format::rounded;
+use super::side_figures::SideFigures;
+use crate::format::{one_part_of, rough};
 use crate::render::estimate::FEWEST_FOR_VARIANCE;
 
 /// Standard errors on either side of an estimate that hold the truth with 95 %.
 const CONFIDENCE: f64 = 1.96;
 
-/// What is not known of the ratio of two CPU times, as a share of it: the same work repeats to
-/// about this, also when both sides take turns.
+/// Relative error of the ratio of two CPU times: the same work repeats to about
+/// this, also when both sides take turns.
 const TIMING_ERROR: f64 = 0.03;
 
 /// A ratio known no better than to this factor (95 %) is not said to be a tie: it is not known.
@@ -71,12 +71,12 @@ impl SpeedUp {
             return percents(factor, spread);
         }
         if spread <= 1.1 {
-            format!("1/{}", rounded(factor, 2))
+            one_part_of(factor)
         } else if spread <= 1.6 {
-            format!("about 1/{}", rounded(round_number(factor), 2))
+            format!("about {}", one_part_of(rough(factor)))
         } else {
-            let [low, high] = [factor / spread, factor * spread].map(round_number);
-            format!("between 1/{} and 1/{}", rounded(high, 2), rounded(low, 2))
+            let [low, high] = [factor / spread, factor * spread].map(rough);
+            format!("between {} and {}", one_part_of(high), one_part_of(low))
         }
     }
 
@@ -126,15 +126,6 @@ fn percents(factor: f64, spread: f64) -> String {
         let (low, high) = (fives(share / spread), fives(share * spread).min(95.0));
         format!("between {low:.0} and {high:.0} %")
     }
-}
-
-/// The nearest of the numbers that one uses for rough figures.
-fn round_number(value: f64) -> f64 {
-    const STEPS: [f64; 10] = [1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0];
-    let decade = 10_f64.powf(value.log10().floor());
-    let distance = |candidate: &f64| (candidate / value).ln().abs();
-    let candidates = STEPS.into_iter().chain([10.0]).map(|step| step * decade);
-    candidates.min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(value)
 }
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
-//! What a sweep found, in words.
+//! The findings of a sweep in words.
 
 use super::plan::TrialSource;
 use super::ranking::{Gain, RankedTrial, Ranking, Worth};
-use crate::format::{percent, rounded};
+use crate::format::{one_part_of, percent, rounded};
 use crate::render::compare::SpeedUp;
 
 /// Names in a row before the rest is counted.
@@ -118,7 +118,7 @@ fn listed(names: &[String]) -> String {
 pub fn relative_time(speed_up: &SpeedUp) -> String {
     let ratio = speed_up.ratio;
     let time = match ratio >= 2.0 {
-        true => format!("1/{}", rounded(ratio, 2)),
+        true => one_part_of(ratio),
         false => rounded(1.0 / ratio, 2),
     };
     match speed_up.log_error > 0.0 {

@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Color;
+use super::or_default::or_default;
 
 const SCALE: f32 = 1.0;
 const COLOR: Color = Color::Gray(1.0);

@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Color;
+use super::or_default::or_default;
 
 const POSITION: [f32; 3] = [0.0, 0.0, 2.0];
 const TARGET: [f32; 3] = [0.0; 3];

@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::or_default::or_default;
 use super::{Color, Extent};
 
 const POINT: [f32; 3] = [0.0; 3];

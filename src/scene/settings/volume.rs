@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::or_default::or_default;
 use super::{Albedo, Axis, Color, EmissionSettings, Extent};
 
 const HALF_SIZE: Extent = Extent::Uniform(1.0);

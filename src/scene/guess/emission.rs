@@ -1,18 +1,18 @@
-//! How what glows is rendered: the emission model of a bare volume, and how bright it is.
+//! The emission of a bare volume: its mode, and how bright it is.
 
 use glam::Vec3A;
 
-use super::FAIRLY;
-use super::probe::{columns, quantile, two_digits};
+use super::note::{About, Note};
+use super::probe::{FAIRLY, columns, quantile};
 use super::roles::Candidate;
-use super::{About, Note};
+use crate::format::two_digits;
 use crate::math::{Aabb, luminance};
-use crate::scene::conventions::kelvin_scale;
+use crate::scene::grid_names::kelvin_scale;
 use crate::scene::role::{Role, flame_stops};
 use crate::scene::settings::{EmissionMode, EmissionSettings, Normalize};
 use crate::volume::blackbody;
 
-/// The emission of the grid that glows, so bright that a fairly bright line along `axis` shows the
+/// The settings of the emission of a grid, so bright that a fairly bright line along `axis` shows the
 /// radiance that is wanted.
 pub(super) fn emission_settings(
     candidate: &Candidate,
@@ -42,7 +42,7 @@ pub(super) fn emission_settings(
             "the emission".to_owned()
         }
     };
-    notes.push(Note::new(About::Glow, format!("\"{name}\" is {what}")));
+    notes.push(Note::new(About::Emission, format!("\"{name}\" is {what}")));
     let brightness = brightness_of(&emission);
     let sums = columns(&candidate.grid, bounds, axis, brightness);
     let scale = quantile(&sums, FAIRLY).map_or(1.0, |sum| two_digits(wanted_radiance / sum));
