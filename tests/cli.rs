@@ -1,5 +1,7 @@
 //! The program from end to end: what it writes, prints and returns.
 
+#[path = "cli/path_versions.rs"]
+mod path_versions;
 #[path = "cli/sweep.rs"]
 mod sweep;
 

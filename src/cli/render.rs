@@ -22,7 +22,7 @@ use crate::render::estimate::samples_per_pixel;
 use crate::render::schedule::Limits;
 use crate::render::{Failure, Film, FilmStats, Headless, RenderJob, render_headless};
 use crate::scene::{self, Settings, VolumeCache};
-use crate::transport::Frame;
+use crate::transport::{Frame, PATH_VERSION};
 
 /// Samples a pixel where neither the command line nor the scene says how many.
 const DEFAULT_SPP: u32 = 64;
@@ -206,6 +206,7 @@ pub(super) fn header(
             .map_err(|e| Error::invalid("", "strategy", e.to_string()))?,
         seed: settings.film.seed,
         version: env!("CARGO_PKG_VERSION").to_owned(),
+        path_version: PATH_VERSION,
         wall_seconds: spent.wall,
         cpu_seconds_setup: spent.cpu_setup,
         cpu_seconds_render: spent.cpu_render,

@@ -32,6 +32,11 @@ use observer::{Nobody, Observer};
 use path::PathContext;
 use probes::{Brightness, Probes};
 
+/// The version of the paths, raised whenever (scene, strategy, seed, pixel, sample) leads to another
+/// path than before. Snapshots carry it: samples of two versions are of two series of random numbers
+/// and of two estimators, so that only those of the same version are continued.
+pub const PATH_VERSION: u64 = 1;
+
 /// What one path brought to its pixel: four parts that sum to the beauty, and what else is kept.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PathSample {
