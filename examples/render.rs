@@ -21,7 +21,7 @@ fn main() -> Result<()> {
     let settings = scene::load(&source)?;
     let scene = scene::assemble(&settings, &VolumeCache::default(), NO_PROGRESS)?;
     let (size, limits) = (UVec2::new(96, 54), Limits { spp: 16, seconds: None });
-    let sampler = Arc::new(Frame::new(Arc::new(scene), size, settings.film.seed));
+    let sampler = Arc::new(Frame::new(Arc::new(scene), size, settings.film.seed, NO_PROGRESS)?);
     let job = RenderJob { sampler, size, limits, resume: None, threads: None };
     let film = render_headless(job, &AtomicBool::new(false), &mut |_, _| {})?.film;
 

@@ -44,7 +44,7 @@
 //! let settings = scene::parse(text, "fire", Path::new("."), &Overrides::default())?;
 //! let scene = scene::assemble(&settings, &VolumeCache::default(), NO_PROGRESS)?;
 //! let (size, limits) = (glam::UVec2::new(24, 16), Limits { spp: 2, seconds: None });
-//! let sampler = Arc::new(Frame::new(Arc::new(scene), size, settings.film.seed));
+//! let sampler = Arc::new(Frame::new(Arc::new(scene), size, settings.film.seed, NO_PROGRESS)?);
 //! let job = RenderJob { sampler, size, limits, resume: None, threads: None };
 //! let film = render_headless(job, &AtomicBool::new(false), &mut |_, _| {})?.film;
 //!

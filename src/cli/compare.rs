@@ -21,14 +21,14 @@ use super::render::{header, parse_seconds};
 use super::scene_source::SceneArguments;
 use super::stats::Spent;
 use super::{Exit, Refusal, print, warn};
-use crate::error::{Error, Result};
+use crate::error::{Error, Progress, Result};
 use crate::image::exr::SnapshotHeader;
 use crate::render::Failure;
 use crate::render::compare::Comparison;
 use crate::render::side_by_side::{PairJob, RenderedPair, render_side_by_side};
 use crate::render::turns::Usage;
 use crate::scene::{self, Settings, VolumeCache};
-use crate::transport::{Frame, PixelSampler, Scene};
+use crate::transport::{PixelSampler, PreparedFrame, Scene};
 use errors::Errors;
 use sides::StrategyChoice;
 use table::{CompareTable, SideRow};
@@ -94,7 +94,8 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
     };
     let scene = scene::assemble(&shared, &cache, &go_on)?;
     let cpu_setup = process_seconds();
-    let sides = settings.map(|settings| prepare(&scene, settings));
+    let [a, b] = settings;
+    let sides = [prepare(&scene, a, &go_on)?, prepare(&scene, b, &go_on)?];
     let wall_setup = start.elapsed().as_secs_f64();
 
     let pair = show_progress(job(arguments, &sides), &interrupt)?;
@@ -157,14 +158,13 @@ pub(super) fn make_folder(folder: &Path) -> Result<()> {
 
 /// Frames the scene with the strategy of one side. Its pilot, if it has one, runs here, so that it
 /// counts as preparation.
-fn prepare(scene: &Scene, settings: Settings) -> Prepared {
+fn prepare(scene: &Scene, settings: Settings, progress: Progress) -> Result<Prepared> {
     let before = process_seconds();
     let scene = Scene { strategy: settings.strategy, ..scene.clone() };
     let size = UVec2::from_array(settings.film.size);
-    let frame = Frame::new(Arc::new(scene), size, settings.film.seed);
-    frame.guided_flights();
+    let frame = PreparedFrame::new(Arc::new(scene), size, settings.film.seed, progress)?;
     let setup = process_seconds() - before;
-    Prepared { settings, sampler: Arc::new(frame), setup }
+    Ok(Prepared { settings, sampler: Arc::new(frame), setup })
 }
 
 fn job(arguments: &Arguments, sides: &[Prepared; 2]) -> PairJob {

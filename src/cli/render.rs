@@ -87,7 +87,7 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
         None => (None, Spent::default()),
     };
     let size = UVec2::from_array(settings.film.size);
-    let sampler = Arc::new(Frame::new(Arc::new(scene), size, settings.film.seed));
+    let sampler = Arc::new(Frame::new(Arc::new(scene), size, settings.film.seed, &go_on)?);
     let threads = arguments.threads.map(usize::from);
     let job = RenderJob { sampler, size, limits, resume: film, threads };
     let render = show_progress(job, &interrupt)?;

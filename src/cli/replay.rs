@@ -12,7 +12,7 @@ use crate::error::{Error, NO_PROGRESS};
 use crate::scene::{self, VolumeCache};
 use crate::transport::observer::{Observer, PathStep};
 use crate::transport::vertex::Vertex;
-use crate::transport::{Frame, PathSample};
+use crate::transport::{PathSample, PreparedFrame};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -41,7 +41,7 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
         return Err(Refusal::usage(Error::invalid("", "--pixel", reason)));
     }
     let scene = scene::assemble(&settings, &cache, NO_PROGRESS)?;
-    let frame = Frame::new(Arc::new(scene), size, settings.film.seed);
+    let frame = PreparedFrame::new(Arc::new(scene), size, settings.film.seed, NO_PROGRESS)?;
     let mut log = Log::default();
     let sample = frame.trace(pixel, arguments.sample, &mut log);
     print(&format!("{}{}", log.text, summary(&sample)))?;

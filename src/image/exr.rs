@@ -297,8 +297,8 @@ mod tests {
 
     use super::*;
     use crate::files::Fingerprint;
-    use crate::render::synthetic::Uniform;
-    use crate::transport::{PathSample, PixelSampler};
+    use crate::render::synthetic::{Uniform, sample_of};
+    use crate::transport::PathSample;
 
     fn film(samples: u32) -> Film {
         let size = UVec2::new(37, 19);
@@ -308,7 +308,7 @@ mod tests {
                 let pixel = UVec2::new(x, y);
                 // Uneven counts, as after an interrupt.
                 for s in 0..samples + (x + y) % 2 {
-                    film.add(pixel, &Uniform::default().sample(pixel, s));
+                    film.add(pixel, &sample_of(&Uniform::default(), pixel, s));
                 }
             }
         }

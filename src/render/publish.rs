@@ -191,8 +191,8 @@ pub(crate) fn render_stats(
 mod tests {
     use super::*;
     use crate::math::Rgb;
-    use crate::render::synthetic::Uniform;
-    use crate::transport::{PathSample, PixelSampler};
+    use crate::render::synthetic::{Uniform, sampled};
+    use crate::transport::PathSample;
 
     fn red(value: f32) -> PathSample {
         PathSample { emission: Rgb::new(value, 0.0, 0.0), alpha: 0.25, ..Default::default() }
@@ -241,13 +241,7 @@ mod tests {
     #[test]
     fn the_noise_is_that_of_the_film() {
         let size = UVec2::new(33, 20);
-        let mut film = Film::new(size).unwrap();
-        for y in 0..size.y {
-            for x in 0..size.x {
-                let pixel = UVec2::new(x, y);
-                (0..9).for_each(|s| film.add(pixel, &Uniform::default().sample(pixel, s)));
-            }
-        }
+        let film = sampled(&Uniform::default(), size, 9);
         assert_eq!(resolve(&film, &mut Vec::new()), FilmStats::of(&film).noise);
     }
 

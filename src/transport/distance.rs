@@ -14,7 +14,12 @@ use glam::Vec3A;
 use super::{
     probes::{Brightness, DistancePdf},
     strategy::{Distance, ScatterProbability, Strategy, Tracker},
-    tracking::{self, Event, Flight},
+    tracking::{
+        decomposition,
+        event::{Event, Flight},
+        fill::fill,
+        scattering::scatter,
+    },
 };
 use crate::{
     math::{PathRng, Ray, Rgb, Slot},
@@ -132,13 +137,7 @@ pub(super) fn unguided(
     // Without a walk of its own, the emission is gathered by the collisions that are read.
     if strategy.advanced.tracker == Tracker::Decomposition && strategy.emission_ratio_tracking {
         let optical_distance = rng.exponential_at(Slot::Distance);
-        return tracking::scatter_by_decomposition(
-            medium,
-            strategy,
-            throughput,
-            optical_distance,
-            rng,
-        );
+        return decomposition::scatter(medium, strategy, throughput, optical_distance, rng);
     }
     null(medium, strategy, throughput, rng)
 }
@@ -146,7 +145,7 @@ pub(super) fn unguided(
 /// The flight along a ray through `medium` by null-collision tracking that knows its density.
 fn null(medium: MediumRay, strategy: &Strategy, throughput: Rgb, rng: &mut PathRng) -> Flight {
     let optical_distance = rng.exponential_at(Slot::Distance);
-    tracking::scatter(medium, strategy, throughput, optical_distance, rng)
+    scatter(medium, strategy, throughput, optical_distance, rng)
 }
 
 /// One flight, guided or not: its weight divides by the mixture of both densities.
@@ -161,10 +160,10 @@ pub(super) fn null_or_guided(
     let is_null = u < NULL_SHARE;
     let mut flight = if is_null {
         let optical_distance = -(1.0 - u / NULL_SHARE).max(f32::EPSILON).ln();
-        tracking::scatter(medium, strategy, throughput, optical_distance, rng)
+        scatter(medium, strategy, throughput, optical_distance, rng)
     } else {
         let t = guide.sample(((u - NULL_SHARE) / (1.0 - NULL_SHARE)).min(1.0 - f32::EPSILON));
-        tracking::fill(medium, strategy, throughput, t, rng)
+        fill(medium, strategy, throughput, t, rng)
     };
     flight.emission /= NULL_SHARE;
     flight.weight *= match flight.event {
@@ -231,7 +230,7 @@ impl<'g> GuidedDistances<'g> {
         throughput: Rgb,
         rng: &mut PathRng,
     ) -> Flight {
-        self.weighed(tracking::fill(medium, strategy, throughput, t, rng), false)
+        self.weighed(fill(medium, strategy, throughput, t, rng), false)
     }
 
     /// The unguided one.
@@ -255,6 +254,8 @@ impl<'g> GuidedDistances<'g> {
 
 #[cfg(test)]
 mod tests {
+    use crate::error::NO_PROGRESS;
+    use crate::transport::prepare;
     use glam::UVec2;
 
     use super::*;
@@ -314,10 +315,10 @@ mod tests {
         let u = again.at(Slot::Distance);
         let plain = if u < NULL_SHARE {
             let depth = -(1.0 - u / NULL_SHARE).max(f32::EPSILON).ln();
-            tracking::scatter(medium.clone(), strategy, Rgb::ONE, depth, &mut again)
+            scatter(medium.clone(), strategy, Rgb::ONE, depth, &mut again)
         } else {
             let t = guide.sample((u - NULL_SHARE) / (1.0 - NULL_SHARE));
-            tracking::fill(medium.clone(), strategy, Rgb::ONE, t, &mut again)
+            fill(medium.clone(), strategy, Rgb::ONE, t, &mut again)
         };
         Drawn { flight, plain, counts: [NULL_SHARE, 1.0 - NULL_SHARE] }
     }
@@ -337,7 +338,7 @@ mod tests {
         let (flight, plain) = match fan.distances().next() {
             Some(t) => (
                 fan.guided(medium(), strategy, t, Rgb::ONE, &mut rng),
-                tracking::fill(medium(), strategy, Rgb::ONE, t, &mut again),
+                fill(medium(), strategy, Rgb::ONE, t, &mut again),
             ),
             None => (
                 fan.unguided(medium(), strategy, Rgb::ONE, &mut rng),
@@ -378,7 +379,7 @@ mod tests {
     #[test]
     fn weights_divide_by_the_mixture_of_what_draws() {
         let scene = Scene::of_text(SMOKE);
-        let probes = Probes::new(&scene).unwrap();
+        let probes = prepare::probes(&scene, NO_PROGRESS).unwrap().unwrap();
         let scatter_probability = ScatterProbability::Even;
         let advanced = Advanced { scatter_probability, ..Advanced::default() };
         let strategy = Strategy { advanced, ..scene.strategy };

@@ -12,15 +12,17 @@ use glam::Vec3A;
 
 use super::direct::PrevVertex;
 use super::distance::{DistanceGuide, GuidedDistances};
-use super::emission::{EmissionEstimator, RayEmission, RayKind};
+use super::emission::EmissionEstimator;
+use super::emission::ray::{RayEmission, RayKind};
 use super::observer::{Observer, PathStep};
 use super::probes::{Brightness, Probes};
+use super::sample::PathSample;
 use super::scene::Scene;
 use super::strategy::Strategy;
-use super::tracking::{Event, Flight};
+use super::tracking::event::{Event, Flight};
 use super::vertex::{DirectionSample, Vertex};
 use super::weight_window::{MOST_NESTED, Splitting};
-use super::{PathSample, direct, distance, guiding, march, tracking};
+use super::{direct, distance, guiding, march, tracking};
 use crate::{
     light::{LightChoice, Receiver},
     math::{PathRng, Ray, Rgb, mean},

@@ -28,6 +28,7 @@ use super::{
     strategy::{Advanced, Distance, LightSelection, Strategy},
 };
 use crate::{
+    error::{Progress, Result, report},
     light::Scores,
     math::{Aabb, PathRng, Ray, mean},
     volume::{medium::Segment, world::MediumRay},
@@ -51,6 +52,9 @@ const OUTSIDE: f32 = 0.05;
 const MOST_AIRLIGHT: f32 = 0.5;
 /// Transmittance below which a line asks the probes no more.
 const DARK: f32 = 1e-4;
+/// Parts of the work that are done, about, once probes are placed and once caustics are found.
+pub(super) const PLACED: f32 = 0.3;
+pub(super) const CAUSTICS_FOUND: f32 = 0.4;
 /// Fixed, with numbers that no picture is likely to use.
 pub(super) const SEED: u64 = 0x7072_6f62_6573_2e2e;
 
@@ -74,21 +78,24 @@ pub struct Probes {
 
 impl Probes {
     /// Probes that know what is looked at from them, if the strategy of `scene` asks for any and
-    /// anything scatters; `None` also once `stop` says so.
-    pub(super) fn placed(scene: &Scene, stop: &(dyn Fn() -> bool + Sync)) -> Option<Self> {
-        let recipe = Self::recipe(&scene.strategy)?;
+    /// anything scatters.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`](crate::error::Error::Cancelled) where `progress` says so.
+    pub(super) fn placed(scene: &Scene, progress: Progress) -> Result<Option<Self>> {
+        let Some(recipe) = Self::recipe(&scene.strategy) else { return Ok(None) };
         let scores_lights = recipe.advanced.light_selection == LightSelection::Probes
             && scene.lights.len(recipe.nee) > 1;
         if !scene.strategy.guides() && !scores_lights {
-            return None;
+            return Ok(None);
         }
-        let (bounds, scattering) = support(scene)?;
+        let Some((bounds, scattering)) = support(scene) else { return Ok(None) };
         let octree = Octree::new(&bounds);
         let cube = octree.bounds();
         let builder =
-            Builder { scene, emission_estimator: EmissionEstimator::at_a_glance(), scattering };
+            Builder { scene, emission_estimator: EmissionEstimator::coarse(), scattering };
         let first = builder.probe(0, &cube);
-        let scattered = airlight::scattered_share(scene);
+        let scattered = airlight::scattered_share(scene, progress)?;
         let mut probes = Self {
             octree,
             probes: vec![first],
@@ -98,13 +105,13 @@ impl Probes {
             mean_cosine: 0.0,
             scattered,
         };
-        probes.refine(&builder, recipe.advanced.probe_count, stop)?;
+        probes.refine(&builder, recipe.advanced.probe_count, progress)?;
         probes.outside = OUTSIDE * probes.mean_radiance();
         probes.mean_cosine = probes.weighted_cosine();
         if scores_lights {
-            probes.score_lights(&builder, stop)?;
+            probes.score_lights(&builder, progress)?;
         }
-        Some(probes)
+        Ok(Some(probes))
     }
 
     /// What of a strategy decides the probes, all else put to its default: strategies that agree in
@@ -169,14 +176,8 @@ impl Probes {
         })
     }
 
-    /// Cuts leaves level by level where they stand for more than their part of the light; `None`
-    /// when stopped.
-    fn refine(
-        &mut self,
-        builder: &Builder<'_>,
-        count: u32,
-        stop: &(dyn Fn() -> bool + Sync),
-    ) -> Option<()> {
+    /// Cuts leaves level by level where they stand for more than their part of the light.
+    fn refine(&mut self, builder: &Builder<'_>, count: u32, progress: Progress) -> Result<()> {
         let mut level = vec![(0, self.octree.bounds())];
         let mut power: f32 = self.power_of(&level[0]);
         for depth in 0..octree::DEEPEST {
@@ -193,33 +194,32 @@ impl Probes {
                 break;
             }
             level = split.iter().flat_map(|leaf| self.split(leaf)).collect();
-            let place =
-                |(node, bounds): &(u32, Aabb)| (!stop()).then(|| builder.probe(*node, bounds));
-            let probes: Option<Vec<Probe>> = level.par_iter().map(place).collect();
+            let place = |(node, bounds): &(u32, Aabb)| {
+                report(progress, 0.0)?;
+                Ok(builder.probe(*node, bounds))
+            };
+            let probes: Result<Vec<Probe>> = level.par_iter().map(place).collect();
             self.probes.extend(probes?);
             let sum = |leaves: &[(u32, Aabb)]| leaves.iter().map(|l| self.power_of(l)).sum::<f32>();
             power += sum(&level) - sum(&split);
         }
-        Some(())
+        Ok(())
     }
 
-    /// Scores the lights for each leaf; `None` when stopped.
-    fn score_lights(
-        &mut self,
-        builder: &Builder<'_>,
-        stop: &(dyn Fn() -> bool + Sync),
-    ) -> Option<()> {
+    /// Scores the lights for each leaf.
+    fn score_lights(&mut self, builder: &Builder<'_>, progress: Progress) -> Result<()> {
         let leaves = self.octree.leaves();
-        let scored: Option<Vec<(u32, Option<Scores>)>> = leaves
-            .par_iter()
-            .map(|(node, bounds)| (!stop()).then(|| (*node, builder.scores(*node, bounds))))
-            .collect();
+        let score = |(node, bounds): &(u32, Aabb)| {
+            report(progress, PLACED)?;
+            Ok((*node, builder.scores(*node, bounds)))
+        };
+        let scored: Result<Vec<(u32, Option<Scores>)>> = leaves.par_iter().map(score).collect();
         let scored = scored?;
         self.scores = vec![None; self.probes.len()];
         for (node, scores) in scored {
             self.scores[node as usize] = scores;
         }
-        Some(())
+        Ok(())
     }
 
     /// Those of the lights around a point, if lights are chosen by them there.

@@ -9,6 +9,7 @@ use super::{
     majorant::{Majorant, MajorantGrid},
     medium::Coefficients,
 };
+use crate::error::{Progress, Result, report};
 use crate::math::{Aabb, Ray, Rgb, luminance};
 
 /// Where a volume is, in its own space. Its borders are sharp.
@@ -181,17 +182,31 @@ impl Volume {
 
     /// A volume whose coefficients vary inside a box, bounded over cells of about `cell_size`.
     /// `voxel` is the edge of the smallest stored voxel in the volume's space, if any is stored.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`](crate::error::Error::Cancelled) where `progress` says so.
     pub fn varying(
         bounds: Aabb,
         properties: MediumProperties,
         cell_size: Vec3A,
         voxel: Option<f32>,
-    ) -> Self {
-        let cells = MajorantGrid::build(bounds, cell_size, |cell| properties.bounds_over(cell));
-        let chords = probe_chords(&cells, &properties);
-        let energy = Energy::varying(&cells, |local| luminance(properties.at(local).emission));
+        progress: Progress,
+    ) -> Result<Self> {
+        let part = |index: usize| move |fraction: f32| progress((index as f32 + fraction) / 3.0);
+        let bounds_over = |cell: &Aabb| properties.bounds_over(cell);
+        let cells = MajorantGrid::build(bounds, cell_size, bounds_over, &part(0))?;
+        let chords = probe_chords(&cells, &properties, &part(1))?;
+        let emission = |local: Vec3A| luminance(properties.at(local).emission);
+        let energy = Energy::varying(&cells, emission, &part(2))?;
         let region = Region::Box(bounds);
-        Self { region, properties, bounds: CoefficientBounds::Cells(cells), voxel, chords, energy }
+        Ok(Self {
+            region,
+            properties,
+            bounds: CoefficientBounds::Cells(cells),
+            voxel,
+            chords,
+            energy,
+        })
     }
 
     /// Where it is.
@@ -228,16 +243,23 @@ impl Volume {
 /// Sums the emission at the cells' centers along every row of cells of each axis, and keeps the
 /// largest sum. It only sets the unit of the boost amount, so a coarse sum will do; but sparks
 /// between the centers count too, half a cell long, lest that unit be next to nothing.
-fn probe_chords(cells: &MajorantGrid, properties: &MediumProperties) -> Vec3A {
+fn probe_chords(
+    cells: &MajorantGrid,
+    properties: &MediumProperties,
+    progress: Progress,
+) -> Result<Vec3A> {
     if !properties.emission.is_some() {
-        return Vec3A::ZERO;
+        return Ok(Vec3A::ZERO);
     }
     let mut brightest = 0.0_f32;
     let mut rows = std::collections::BTreeMap::<(usize, i32, i32), f32>::new();
-    cells.for_each_cell(|cell, region, majorant| {
+    for (index, majorant) in cells.cells().iter().enumerate() {
         if majorant.emission <= 0.0 {
-            return;
+            continue;
         }
+        report(progress, index as f32 / cells.cells().len() as f32)?;
+        let cell = cells.grid().cell(index);
+        let region = cells.grid().whole(cell);
         let emission = luminance(properties.at(region.center()).emission);
         brightest = brightest.max(majorant.emission);
         for axis in 0..3 {
@@ -245,9 +267,10 @@ fn probe_chords(cells: &MajorantGrid, properties: &MediumProperties) -> Vec3A {
             let key = (axis, row[(axis + 1) % 3], row[(axis + 2) % 3]);
             *rows.entry(key).or_default() += emission * cells.cell_size()[axis];
         }
-    });
-    rows.iter().fold(0.5 * brightest * cells.cell_size(), |mut chords, (&(axis, ..), &sum)| {
+    }
+    let least = 0.5 * brightest * cells.cell_size();
+    Ok(rows.iter().fold(least, |mut chords, (&(axis, ..), &sum)| {
         chords[axis] = chords[axis].max(sum);
         chords
-    })
+    }))
 }

@@ -72,7 +72,9 @@ fn headless(settings: &Settings, spp: u32) -> Film {
     let scene = scene::assemble(settings, &VolumeCache::default(), NO_PROGRESS).unwrap();
     let size = UVec2::from(settings.film.size);
     let job = RenderJob {
-        sampler: Arc::new(Frame::new(Arc::new(scene), size, settings.film.seed)),
+        sampler: Arc::new(
+            Frame::new(Arc::new(scene), size, settings.film.seed, NO_PROGRESS).unwrap(),
+        ),
         size,
         limits: Limits { spp, seconds: None },
         resume: None,

@@ -11,9 +11,10 @@ use crate::app::jobs::live_render::LiveRender;
 use crate::app::picture::viewport::View;
 use crate::app::ui::theme::{color, space};
 use crate::app::ui::widgets::significant;
+use crate::error::NO_PROGRESS;
 use crate::transport::probes::Probes;
 use crate::transport::profile::{Profile, ProfileRow};
-use crate::transport::{Frame, Scene};
+use crate::transport::{Frame, PreparedFrame, Scene};
 
 /// Rows of the table behind the curves.
 const ROWS: u32 = 300;
@@ -117,21 +118,26 @@ impl RayScene {
     }
 
     /// Looks into the ray; `known` is the frame of the same picture, if there is one.
-    fn found(&self, known: Option<Arc<Frame>>) -> Found {
+    fn found(&self, known: Option<Arc<PreparedFrame>>) -> Option<Found> {
         let Self { scene, probes, size, .. } = self;
-        let frame = known.unwrap_or_else(|| {
-            Arc::new(Frame::with_probes(scene.clone(), *size, 0, probes.clone()))
-        });
+        let make = || {
+            let frame = Frame::with_probes(scene.clone(), *size, 0, probes.clone());
+            frame.prepared(NO_PROGRESS)
+        };
+        let frame = match known {
+            Some(frame) => frame,
+            None => Arc::new(make().ok()?),
+        };
         let ray = scene.camera.ray(*size, self.pixel, Vec2::splat(0.5));
         let profile = Profile::along(&frame, &ray, ROWS);
-        Found { frame, profile }
+        Some(Found { frame, profile })
     }
 }
 
 /// What was found along a ray.
 struct Found {
     /// Kept for the next ray of the same picture: what pays in it takes a while to find out.
-    frame: Arc<Frame>,
+    frame: Arc<PreparedFrame>,
     /// None where the ray meets no medium.
     profile: Option<Profile>,
 }
@@ -141,7 +147,7 @@ struct Found {
 pub struct Inspector {
     /// Where in the picture, in shares of its sides.
     picked: Option<Vec2>,
-    profile: Background<RayScene, Found>,
+    profile: Background<RayScene, Option<Found>>,
     /// The distance whose values are read.
     at: Option<f32>,
 }
@@ -161,7 +167,10 @@ impl Inspector {
         });
         let known =
             source.as_ref().zip(self.profile.done()).and_then(|(source, (other, found))| {
-                source.same_picture(other).then(|| found.frame.clone())
+                found
+                    .as_ref()
+                    .filter(|_| source.same_picture(other))
+                    .map(|found| found.frame.clone())
             });
         let (make, wake) = (move |source: &RayScene| source.found(known), ctx.clone());
         self.profile.update(source, RayScene::same, make, move || wake.request_repaint());
@@ -194,7 +203,7 @@ impl Inspector {
     }
 
     fn contents(&mut self, ui: &mut Ui) {
-        let Some((source, Found { profile, .. })) = self.profile.done() else {
+        let Some((source, Some(Found { profile, .. }))) = self.profile.done() else {
             ui.label("Looking …");
             return;
         };

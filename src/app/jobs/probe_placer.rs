@@ -7,14 +7,14 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
 use super::scene_loader::{BuiltScene, RenderStart};
-use crate::error::{Error, Result};
+use crate::error::{Error, Progress, Result};
 use crate::render::pool::{Pool, Priority};
 use crate::render::{Request, Resume, Session};
 use crate::transport::probes::Probes;
-use crate::transport::{Frame, PixelSampler, Scene};
+use crate::transport::{Frame, PixelSampler, Scene, prepare};
 
-/// Places the probes of a scene unless told to stop.
-type PlaceProbes = dyn Fn(&Scene, &(dyn Fn() -> bool + Sync)) -> Option<Probes> + Send + Sync;
+/// Places the probes of a scene unless they are given up on the way.
+type PlaceProbes = dyn Fn(&Scene, Progress) -> Result<Option<Probes>> + Send + Sync;
 
 /// The handle of the thread. Dropping it stops what is being placed and ends the thread.
 pub struct ProbePlacer {
@@ -47,12 +47,15 @@ impl ProbePlacer {
     /// When the system refuses to start threads.
     pub fn new(session: Arc<Session>, threads: Option<usize>) -> Result<Self> {
         let pool = Pool::new(threads, Priority::Background)?;
-        Self::with_maker(session, move |scene, stop| pool.install(|| Probes::unless(scene, stop)))
+        let make = move |scene: &Scene, progress: Progress| {
+            pool.install(|| prepare::probes(scene, progress))
+        };
+        Self::with_maker(session, make)
     }
 
     fn with_maker(
         session: Arc<Session>,
-        make: impl Fn(&Scene, &(dyn Fn() -> bool + Sync)) -> Option<Probes> + Send + Sync + 'static,
+        make: impl Fn(&Scene, Progress) -> Result<Option<Probes>> + Send + Sync + 'static,
     ) -> Result<Self> {
         let desk = Mutex::default();
         let shared = Arc::new(Shared { desk, bell: Condvar::new(), generation: AtomicU64::new(0) });
@@ -151,11 +154,12 @@ impl Desk {
 
 fn work(shared: &Shared, session: &Session, make: &PlaceProbes) {
     while let Some((built, generation)) = shared.next() {
-        let stop = || shared.generation.load(Ordering::Relaxed) != generation;
+        let go_on = |_: f32| shared.generation.load(Ordering::Relaxed) == generation;
         let scene = built.scene.clone();
-        // Should it fail, the render goes on without; its thread has reported why.
-        let probes = catch_unwind(AssertUnwindSafe(|| make(&scene, &stop)));
-        let probes = probes.ok().flatten().map(Arc::new);
+        // Should it fail, the render goes on without; its thread has reported why. Probes that were
+        // given up are not taken in.
+        let probes = catch_unwind(AssertUnwindSafe(|| make(&scene, &go_on)));
+        let probes = probes.ok().and_then(Result::ok).flatten().map(Arc::new);
         if let Some((built, start)) = shared.take_in(built, generation, probes.as_ref()) {
             let sampler = probes.map(|probes| sampler(&built, start, Some(probes)));
             session.improve(start.generation, sampler);

@@ -1,0 +1,100 @@
+//! What one path brings to its pixel, and whatever can sample a pixel.
+
+use glam::UVec2;
+
+use crate::error::{Progress, Result, report};
+use crate::math::Rgb;
+
+/// The version of the paths, raised whenever (scene, strategy, seed, pixel, sample) leads to another
+/// path than before. Snapshots carry it: samples of two versions come from two estimators or two
+/// series of random numbers, so that only those of the same version are continued.
+pub const PATH_VERSION: u64 = 1;
+
+/// What one path brought to its pixel: four parts that sum to the beauty, and what else is kept.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PathSample {
+    /// Volume emission seen on the camera ray.
+    pub emission: Rgb,
+    /// Environment and emitting surfaces seen directly.
+    pub background: Rgb,
+    /// Light after one scattering event or reflection.
+    pub direct: Rgb,
+    /// Light after more of them.
+    pub indirect: Rgb,
+    /// 1 − transmittance to the background; 1 on surfaces.
+    pub alpha: f32,
+    /// Distance of the first event or surface, if there was one.
+    pub depth: Option<f32>,
+    /// Tentative collisions of all walks of the path, and steps of ray marching.
+    pub tracking_steps: u32,
+    /// Whether the path was cut, at [`path::GUARD`] events or [`tracking::MOST_COLLISIONS`].
+    pub guard_hit: bool,
+}
+
+impl PathSample {
+    /// All light of the path.
+    pub fn beauty(&self) -> Rgb {
+        self.emission + self.background + self.direct + self.indirect
+    }
+}
+
+/// What the pilot pass of a picture has found, on which all samples of a pixel but the first rest.
+/// Only [`PixelSampler::prepare`] makes one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Prepared {
+    pub(super) guided_flights: Option<f32>,
+}
+
+impl Prepared {
+    /// Nothing was to be found.
+    pub(super) const NOTHING: Self = Self { guided_flights: None };
+
+    /// Guided flights of a camera ray, relative to those that the probes propose; 0 where none pay.
+    /// `None` where no pilot decides it.
+    pub fn guided_flights(&self) -> Option<f32> {
+        self.guided_flights
+    }
+}
+
+/// Which sample of a pixel.
+#[derive(Clone, Copy, Debug)]
+pub enum SampleNumber<'p> {
+    /// The first, which waits for no pilot pass, so that a camera on the move never does.
+    First,
+    /// Any other, counted from 0 as all are.
+    Later(u32, &'p Prepared),
+}
+
+impl<'p> SampleNumber<'p> {
+    /// Sample `index`, counted from 0.
+    pub fn new(index: u32, prepared: &'p Prepared) -> Self {
+        match index {
+            0 => Self::First,
+            _ => Self::Later(index, prepared),
+        }
+    }
+
+    /// Its index, counted from 0.
+    pub fn index(&self) -> u32 {
+        match *self {
+            Self::First => 0,
+            Self::Later(index, _) => index,
+        }
+    }
+}
+
+/// Anything that can sample a pixel: film and session know nothing more.
+pub trait PixelSampler: Send + Sync {
+    /// One path through a pixel; the same arguments give the same path.
+    fn sample(&self, pixel: UVec2, number: SampleNumber) -> PathSample;
+
+    /// Runs the pilot pass, which finds what all samples of a pixel but the first rest on. The same
+    /// sampler always finds the same.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`](crate::error::Error::Cancelled) where `progress` says so.
+    fn prepare(&self, progress: Progress) -> Result<Prepared> {
+        report(progress, 1.0)?;
+        Ok(Prepared::NOTHING)
+    }
+}
