@@ -82,6 +82,28 @@ fn json(path: &Path) -> Value {
     serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap()
 }
 
+/// The keys of `--stats`, which scripts read.
+const STATS: [&str; 18] = [
+    "cpu_seconds_render",
+    "cpu_seconds_setup",
+    "cpu_seconds_total",
+    "gray_variance_of_mean",
+    "guard_hits",
+    "height",
+    "mean_relative_variance",
+    "mean_rgb",
+    "non_finite_samples",
+    "paths",
+    "seed",
+    "spp",
+    "strategy",
+    "threads",
+    "tracking_steps",
+    "version",
+    "wall_seconds",
+    "width",
+];
+
 #[test]
 fn render_writes_every_format_and_the_figures() {
     let place = Place::new();
@@ -106,31 +128,9 @@ fn render_writes_every_format_and_the_figures() {
     assert_eq!(film.sample_range(), (4, 4));
 
     let stats = json(&place.path("stats.json"));
-    let keys: Vec<&str> = stats.as_object().unwrap().keys().map(String::as_str).collect();
-    let mut expected = vec![
-        "spp",
-        "width",
-        "height",
-        "seed",
-        "threads",
-        "wall_seconds",
-        "cpu_seconds_total",
-        "cpu_seconds_setup",
-        "cpu_seconds_render",
-        "mean_rgb",
-        "gray_variance_of_mean",
-        "mean_relative_variance",
-        "paths",
-        "tracking_steps",
-        "non_finite_samples",
-        "guard_hits",
-        "strategy",
-        "version",
-    ];
-    let mut found = keys.clone();
-    expected.sort_unstable();
-    found.sort_unstable();
-    assert_eq!(found, expected);
+    let mut keys: Vec<&str> = stats.as_object().unwrap().keys().map(String::as_str).collect();
+    keys.sort_unstable();
+    assert_eq!(keys, STATS);
     assert_eq!((&stats["spp"], &stats["seed"]), (&4.into(), &3.into()));
     assert_eq!((&stats["width"], &stats["threads"]), (&40.into(), &2.into()));
     assert_eq!(stats["paths"], 40 * 30 * 4);
