@@ -15,7 +15,8 @@ use super::cost::Cost;
 use crate::transport::emission::EmissionEstimator;
 use crate::transport::path;
 use crate::transport::path::PathContext;
-use crate::transport::probes::{Brightness, CAUSTICS_FOUND, Indirect, Probes, SEED};
+use crate::transport::probes::stages::{CAUSTICS_FOUND, SEED};
+use crate::transport::probes::{Brightness, Indirect, Probes};
 use crate::transport::scene::Scene;
 use crate::transport::strategy::{Advanced, Preset, Strategy};
 use crate::{

@@ -37,7 +37,7 @@ pub(super) fn scattered_share(scene: &Scene, progress: Progress) -> Result<f32> 
             passed += intensity(&emitters[chosen]);
             chosen += 1;
         }
-        let mut rng = PathRng::new(super::SEED, UVec2::Y, i);
+        let mut rng = PathRng::new(super::stages::SEED, UVec2::Y, i);
         Ok(scattered_of(scene, &emitters[chosen], &mut rng))
     };
     let scattered: f32 = (0..RAYS).map(of_ray).sum::<Result<f32>>()?;

@@ -2,7 +2,8 @@
 
 use glam::{UVec2, Vec2};
 
-use super::{Probes, SEED};
+use super::probes::Probes;
+use super::stages::SEED;
 use crate::{
     error::{Progress, Result, report},
     math::{PathRng, luminance},

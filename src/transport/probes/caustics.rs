@@ -10,7 +10,9 @@
 use glam::{UVec2, Vec2, Vec3A};
 use rayon::prelude::*;
 
-use super::{PLACED, PhotonSegment, Probes, SEED};
+use super::caustic_lobes::PhotonSegment;
+use super::probes::Probes;
+use super::stages::{PLACED, SEED};
 use crate::transport::direct;
 use crate::transport::emission::EmissionEstimator;
 use crate::transport::scene::Scene;
