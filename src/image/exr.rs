@@ -322,6 +322,7 @@ mod tests {
             strategy: "emission_decoupling = true\n".to_owned(),
             seed: u64::MAX - 3,
             version: "0.1.0".to_owned(),
+            path_version: 7,
             wall_seconds: 1.5,
             cpu_seconds_setup: 0.25,
             cpu_seconds_render: 2.75,

@@ -92,6 +92,7 @@ fn lift_limit(settings: &mut Settings, film: &Film) -> bool {
 mod tests {
     use super::*;
     use crate::image::exr;
+    use crate::transport::PATH_VERSION;
     use glam::UVec2;
 
     /// A snapshot of nothing much, with a volume file beside it.
@@ -109,6 +110,7 @@ mod tests {
         let header = SnapshotHeader {
             scene: scene::to_toml(&settings, None).unwrap(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
+            path_version: PATH_VERSION,
             wall_seconds: 7.0,
             files: scene::fingerprints(&settings).unwrap(),
             ..SnapshotHeader::default()
@@ -138,6 +140,21 @@ mod tests {
         let Notice { level, text } = reopened.notice;
         assert_eq!(level, Level::Failed);
         assert!(text.contains("fire.vdb had 6 bytes and now has 12"), "{text}");
+    }
+
+    #[test]
+    fn samples_of_other_paths_are_shown_as_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = write(folder.path(), 9);
+        let Snapshot { film, mut header } = read_snapshot(Path::new(&path)).unwrap();
+        header.path_version = PATH_VERSION + 1;
+        exr::write(Path::new(&path), &film, &header).unwrap();
+        let (settings, reopened) = open(&path).unwrap();
+        assert!(reopened.resume.is_none() && settings.film.size == [3, 2]);
+        let Notice { level, text } = reopened.notice;
+        assert_eq!(level, Level::Failed);
+        let theirs = format!("the snapshot has path version {}", PATH_VERSION + 1);
+        assert!(text.contains("rendered anew") && text.contains(&theirs), "{text}");
     }
 
     #[test]

@@ -14,6 +14,7 @@ use crate::image::tone::Tone;
 use crate::render::publish::resolve;
 use crate::render::{Film, Picture};
 use crate::scene::{self, Settings};
+use crate::transport::PATH_VERSION;
 
 /// What is to be written.
 pub enum Content {
@@ -157,6 +158,7 @@ pub fn header(settings: &Settings, [seconds, cpu_seconds]: [f64; 2]) -> Result<S
         strategy,
         seed: settings.film.seed,
         version: env!("CARGO_PKG_VERSION").to_owned(),
+        path_version: PATH_VERSION,
         wall_seconds: seconds,
         cpu_seconds_render: cpu_seconds,
         files: scene::fingerprints(settings)?,
