@@ -2,37 +2,25 @@
 //! of it belongs to the scene, the strategy or the record of edits.
 
 mod cells;
+mod curves;
 mod legend;
 mod overlay;
 pub mod panel;
 mod plots;
 mod ray;
 
-use egui::{Context, Rect, Ui};
-use glam::UVec2;
-
-pub use super::picture::ramp_color::{STOPS, Scale, color as ramp_color, stops};
+use egui::{Context, Ui};
 
 use super::jobs::live_render::LiveRender;
-use super::picture::display::Look;
-use super::picture::viewport::View;
+use super::picture::look::Look;
+use super::picture::view::View;
+use crate::image::ramp::Scale;
 use crate::image::tone::Tone;
 use crate::render::{Layer, Picture};
 use crate::scene::{self, Settings};
-use cells::{CellSource, Gathering};
+use cells::{CellSource, CellValue, Gathering};
 pub use legend::{Legend, show as show_legends};
 use ray::Inspector;
-
-/// What the cells drawn over the picture are colored by.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CellValue {
-    /// The local majorant: the largest extinction in the cell, 1/length.
-    Majorant,
-    /// The power the cell emits, radiance × length².
-    Energy,
-    /// What each probe thinks is scattered towards the camera, radiance/length.
-    Probes,
-}
 
 /// What the user asked to see.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -106,10 +94,4 @@ impl Diagnostics {
             self.wanted.ray = self.inspector.show(ui, &view);
         }
     }
-}
-
-/// The part of the window that the picture covers.
-fn picture_rect(view: &View, size: UVec2) -> Rect {
-    let corners = [glam::Vec2::ZERO, size.as_vec2()].map(|corner| view.window_at(corner));
-    Rect::from_min_max(corners[0], corners[1]).intersect(view.rect)
 }

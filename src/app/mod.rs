@@ -29,17 +29,18 @@ mod sweep;
 mod ui;
 
 pub use command::Command;
-pub use compare::reference::Measure;
+pub use compare::measure::Measure;
 pub use compare::second_side::CompareLayout;
-pub use diagnostics::{Scale, ramp_color};
 pub use document::{Compared, Document, Editor, Side};
 pub use jobs::dialogs::Dialogs;
 pub use jobs::live_render::LiveRender;
+pub use picture::ramp_color::color as ramp_color;
 pub use shell::{App, Options};
 pub use sweep::{Results, Sweep};
 pub use ui::notices::{Level, Notice, Notices};
 
 use crate::error::{Error, Result};
+pub use crate::image::ramp::Scale;
 
 /// The window as eframe runs it.
 struct Window {

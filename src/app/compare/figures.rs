@@ -3,8 +3,9 @@
 
 use egui::{Grid, RichText, Ui};
 
-use super::noise_plot::{self, COLORS, Plotted};
-use crate::app::compare::reference::{Measure, MeasuredReference};
+use super::measure::{Measure, Plotted};
+use super::noise_plot::{self, COLORS};
+use crate::app::compare::reference::MeasuredReference;
 use crate::app::compare::region_figures::RegionFigures;
 use crate::app::panels::{Panel, explain};
 use crate::app::ui::theme::color;

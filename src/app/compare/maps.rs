@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use crate::app::compare::reference::Measure;
+use super::measure::Measure;
 use crate::app::document::Side;
-use crate::app::picture::display::Look;
+use crate::app::picture::look::Look;
 use crate::image::metrics::{ErrorMap, magma};
 use crate::image::ramp::{self, Scale};
 use crate::image::tone::{Tone, ToneCurve, false_color, linear_from_srgb};

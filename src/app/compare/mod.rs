@@ -3,6 +3,7 @@
 
 pub mod figures;
 pub mod maps;
+pub mod measure;
 pub mod noise_plot;
 pub mod panel;
 pub mod reference;

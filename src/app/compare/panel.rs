@@ -5,7 +5,7 @@ use egui::{RichText, Ui};
 use super::figures;
 use crate::app::command::Command;
 use crate::app::compare::maps::{Difference, Noise};
-use crate::app::compare::reference::Measure;
+use crate::app::compare::measure::Measure;
 use crate::app::compare::second_side::{CompareLayout, FLIP, SecondSide};
 use crate::app::document::{Document, Side, strategy_name};
 use crate::app::panels::Panel;

@@ -13,56 +13,19 @@ use glam::UVec2;
 pub use load::{LoadedReference, ReferenceOrigin};
 
 use super::maps::{Map, MapKind};
-use super::noise_plot::Plotted;
+use super::measure::{Measure, Plotted};
 use crate::app::document::Side;
 use crate::app::jobs::background::Background;
 use crate::error::Result;
-use crate::image::metrics::{ErrorMap, Errors, Viewing};
+use crate::image::metrics::{Errors, Viewing};
 use crate::image::tone::Tone;
+use crate::render::Picture;
 use crate::render::compare::NoiseHistory;
 use crate::render::pool::{Pool, Priority};
-use crate::render::{Area, Picture};
 use load::Loading;
 
 /// Measuring rests so many times as long as it took, for the machine is there to render.
 const REST: u32 = 9;
-
-/// How an error is measured.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Measure {
-    /// Squared errors in linear light, relative to the reference.
-    #[default]
-    RelMse,
-    /// What somebody notices who flips between the displayed pictures.
-    Flip,
-}
-
-impl Measure {
-    /// Both of them.
-    pub const ALL: [Self; 2] = [Self::RelMse, Self::Flip];
-
-    /// What it is called.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::RelMse => "relMSE",
-            Self::Flip => "FLIP",
-        }
-    }
-
-    /// The errors of this kind.
-    pub fn of(self, errors: &Errors) -> &ErrorMap {
-        match self {
-            Self::RelMse => &errors.rel_mse,
-            Self::Flip => &errors.flip,
-        }
-    }
-
-    /// Their mean over an area, or over all.
-    pub fn mean(self, errors: &Errors, area: Option<Area>) -> f64 {
-        let map = self.of(errors);
-        area.map_or(map.mean, |area| map.mean_of(area.first, area.size))
-    }
-}
 
 /// What is measured: one picture, or those of A and B.
 #[derive(Clone)]

@@ -7,12 +7,12 @@ use egui::{Context, Key};
 use glam::UVec2;
 
 use super::maps::{Difference, Map, MapKind, Noise};
-use super::reference::Measure;
+use super::measure::Measure;
 use super::region_figures::{PartTask, RegionFigures};
 use crate::app::document::{Compared, Document, Side};
 use crate::app::jobs::background::Background;
 use crate::app::jobs::live_render::{LiveRender, News};
-use crate::app::picture::display::Look;
+use crate::app::picture::look::Look;
 use crate::app::picture::viewport::Shown;
 use crate::error::Result;
 use crate::render::compare::{Comparison, NoiseHistory};

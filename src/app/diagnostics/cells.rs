@@ -1,11 +1,11 @@
 //! The strongest cells of a scene's volumes, gathered behind the window's back.
 
-use crate::app::jobs::background::Background;
 use std::sync::Arc;
 
 use glam::Vec3A;
 
-use super::{CellValue, Scale};
+use crate::app::jobs::background::Background;
+use crate::image::ramp::Scale;
 use crate::math::Aabb;
 use crate::transport::Scene;
 use crate::transport::probes::Probes;
@@ -14,6 +14,17 @@ use crate::volume::{CoefficientBounds, Region};
 
 /// The most cells that are drawn.
 pub const MOST: usize = 4000;
+
+/// What the cells drawn over the picture are colored by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CellValue {
+    /// The local majorant: the largest extinction in the cell, 1/length.
+    Majorant,
+    /// The power the cell emits, radiance × length².
+    Energy,
+    /// What each probe thinks is scattered towards the camera, radiance/length.
+    Probes,
+}
 
 /// A cell in the world.
 #[derive(Clone, Debug)]

@@ -2,13 +2,14 @@
 
 use egui::{Align, Frame, Label, Layout, Margin, Rect, RichText, Ui, UiBuilder, pos2, vec2};
 
-use super::cells::Cells;
-use super::{CellValue, Scale, overlay};
+use super::cells::{CellValue, Cells};
+use super::overlay;
 use crate::app::compare::maps::{ColorKey, Difference, MapKind, Noise};
-use crate::app::compare::reference::Measure;
+use crate::app::compare::measure::Measure;
 use crate::app::document::Side;
 use crate::app::ui::theme::{color, space};
 use crate::app::ui::widgets::significant;
+use crate::image::ramp::Scale;
 use crate::image::tone::false_color;
 use crate::render::Layer;
 

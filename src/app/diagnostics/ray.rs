@@ -2,13 +2,14 @@
 
 use std::sync::Arc;
 
-use egui::{Color32, Context, CursorIcon, Grid, Label, RichText, Sense, Stroke, Ui, pos2, vec2};
+use egui::{Context, CursorIcon, Grid, Label, RichText, Sense, Stroke, Ui, pos2, vec2};
 use glam::{UVec2, Vec2};
 
+use super::curves::{DENSITIES, RayCurve, SHARES};
 use super::plots;
 use crate::app::jobs::background::Background;
 use crate::app::jobs::live_render::LiveRender;
-use crate::app::picture::viewport::View;
+use crate::app::picture::view::View;
 use crate::app::ui::theme::{color, space};
 use crate::app::ui::widgets::significant;
 use crate::transport::probes::Probes;
@@ -23,77 +24,6 @@ const MARK: f32 = 6.0;
 const COLUMNS: [f32; 2] = [110.0, 50.0];
 /// Height of a row of the legend.
 const ROW: f32 = 15.0;
-
-/// A curve as the legend explains it.
-pub struct RayCurve {
-    /// What it shows.
-    pub name: &'static str,
-    /// The unit of its values.
-    pub unit: &'static str,
-    /// What it means.
-    pub help: &'static str,
-    /// Its color.
-    pub color: Color32,
-    /// Its value in a row.
-    pub value: fn(&ProfileRow) -> f32,
-}
-
-/// The curves over 1/length.
-pub const DENSITIES: [RayCurve; 3] = [
-    RayCurve {
-        name: "Extinction",
-        unit: "1/length",
-        help: "μ_t: how much the medium takes from a ray per length, by absorbing and scattering.",
-        color: color::CURVE,
-        value: |row| row.mu_t,
-    },
-    RayCurve {
-        name: "Drawn by chance",
-        unit: "1/length",
-        help: "p_null = μ_t T: the density with which null-collision tracking scatters here.",
-        color: color::CURVE_CHANCE,
-        value: |row| row.p_null,
-    },
-    RayCurve {
-        name: "Drawn by probes",
-        unit: "1/length",
-        help: "p_select: the density with which probes and equal angles scatter here.",
-        color: color::CURVE_PROBES,
-        value: |row| row.p_select,
-    },
-];
-
-/// The curves from 0 to 1; the emission as a share of its peak.
-pub const SHARES: [RayCurve; 4] = [
-    RayCurve {
-        name: "Transmittance",
-        unit: "",
-        help: "T: the share of light that comes through from here to the camera.",
-        color: color::CURVE,
-        value: |row| row.transmittance,
-    },
-    RayCurve {
-        name: "Emission",
-        unit: "radiance/length",
-        help: "ε: the radiance that the medium emits per length. Its curve is a share of its peak.",
-        color: color::CURVE_GLOW,
-        value: |row| row.emission,
-    },
-    RayCurve {
-        name: "Weight of chance",
-        unit: "",
-        help: "The MIS weight of scattering that null-collision tracking finds here.",
-        color: color::CURVE_CHANCE,
-        value: |row| row.weight_null,
-    },
-    RayCurve {
-        name: "Weight of probes",
-        unit: "",
-        help: "The MIS weight of scattering that probes and equal angles find here.",
-        color: color::CURVE_PROBES,
-        value: |row| row.weight_guided,
-    },
-];
 
 /// What the ray is looked into with.
 #[derive(Clone)]

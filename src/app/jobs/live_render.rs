@@ -6,10 +6,9 @@ use std::time::{Duration, Instant};
 
 use glam::UVec2;
 
+use super::built::{BuiltScene, Grids, RenderStart};
 use super::probe_placer::ProbePlacer;
-use super::scene_loader::{
-    BuiltScene, Grids, LoadJob, LoadOutcome, LoadReport, Loader, RenderStart,
-};
+use super::scene_loader::{LoadJob, LoadOutcome, LoadReport, Loader};
 use crate::app::ui::notices::Notice;
 use crate::error::{Error, Result};
 use crate::render::publish::Extras;

@@ -6,7 +6,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
-use super::scene_loader::{BuiltScene, RenderStart};
+use super::built::{BuiltScene, RenderStart};
 use crate::error::{Error, Result};
 use crate::render::pool::{Pool, Priority};
 use crate::render::{Request, Resume, Session};

@@ -2,20 +2,14 @@
 //! window. The latest request wins: a new one cancels the one at work, and only its outcome is
 //! reported.
 
-use std::collections::HashMap;
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, mpsc};
 
-use glam::UVec2;
-
+use super::built::{BuiltScene, Grids, RenderStart};
 use super::probe_placer::ProbePlacer;
 use super::reopen::{self, Reopened};
 use crate::error::{Error, Progress, Result};
-use crate::scene::{self, GridDescription, Note, Overrides, Settings, VolumeCache};
-use crate::transport::Scene;
-
-/// The grids of volume files by the file's name.
-pub type Grids = HashMap<String, Vec<GridDescription>>;
+use crate::scene::{self, Overrides, Settings, VolumeCache};
 
 /// What the loader is asked to do.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,15 +28,6 @@ pub enum LoadReport {
     Grids(Arc<Grids>),
 }
 
-/// A render to start as soon as a job is done.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct RenderStart {
-    /// Width and height of the film in pixels.
-    pub size: UVec2,
-    /// The number of the render.
-    pub generation: u64,
-}
-
 /// What came of a job.
 pub struct LoadOutcome {
     /// The number of the request, as [`Loader::request`] gave it.
@@ -55,17 +40,6 @@ pub struct LoadOutcome {
     pub started: Option<RenderStart>,
     /// How it goes on, where a snapshot was opened.
     pub reopened: Option<Reopened>,
-}
-
-/// A built scene and the settings that it was built from.
-#[derive(Clone)]
-pub struct BuiltScene {
-    /// What it was built from.
-    pub settings: Settings,
-    /// What was guessed for a bare volume.
-    pub notes: Vec<Note>,
-    /// Ready to sample.
-    pub scene: Arc<Scene>,
 }
 
 /// The handle of the thread. Dropping it cancels and ends the thread.

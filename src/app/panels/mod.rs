@@ -14,17 +14,15 @@ pub mod strategy;
 pub mod surfaces;
 pub mod volume;
 
-use egui::{RichText, Ui};
-
 pub use super::ui::sections::{folded_section, section};
+pub use super::ui::widgets::explain;
 
 use super::command::Command;
 use super::compare::reference::MeasuredReference;
 use super::compare::second_side::SecondSide;
 use super::diagnostics::Wanted;
 use super::document::Editor;
-use super::jobs::scene_loader::Grids;
-use super::ui::theme::color;
+use super::jobs::built::Grids;
 use crate::math::Aabb;
 use crate::scene::Note;
 
@@ -56,9 +54,4 @@ pub struct Panel<'a> {
     pub reopened: &'a mut Option<String>,
     /// Commands that buttons ask for.
     pub commands: &'a mut Vec<Command>,
-}
-
-/// Small dim text that explains.
-pub fn explain(ui: &mut Ui, text: &str) {
-    ui.add(egui::Label::new(RichText::new(text).small().color(color::TEXT_DIM)).wrap());
 }

@@ -2,9 +2,11 @@
 
 pub mod display;
 pub mod gizmo;
+pub mod look;
 pub mod navigation;
 pub mod pixel_values;
 pub mod ramp_color;
 pub mod region;
+pub mod view;
 pub mod viewport;
 pub mod zoom;

@@ -3,7 +3,7 @@
 use egui::{CursorIcon, PointerButton, Rect, Response, Stroke, StrokeKind, Ui};
 use glam::{UVec2, Vec2};
 
-use super::viewport::View;
+use super::view::View;
 use crate::app::ui::theme::color;
 use crate::render::Area;
 

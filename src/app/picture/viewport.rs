@@ -6,10 +6,12 @@ use std::time::{Duration, Instant};
 use egui::{CursorIcon, Key, PointerButton, Rect, Response, Sense, Stroke, Ui};
 use glam::{UVec2, Vec2, Vec3};
 
-use super::display::{self, Look};
+use super::display;
+use super::look::Look;
 use super::navigation::Pose;
 use super::pixel_values;
 use super::region::PictureRegion;
+use super::view::{View, from_egui};
 use super::zoom::{Placement, Zoom};
 use crate::app::document::Editor;
 use crate::app::ui::theme::color;
@@ -95,36 +97,6 @@ impl Shown {
                 vec![pane(a, *look, halves[0], halves[0]), pane(b, *look, halves[1], halves[1])]
             }
         }
-    }
-}
-
-/// Where the picture lies in the window.
-#[derive(Clone, Copy, Debug)]
-pub struct View {
-    /// The viewport, in points.
-    pub rect: Rect,
-    /// How the picture lies in it, in framebuffer pixels.
-    pub placement: Placement,
-    /// Framebuffer pixels per point.
-    pub factor: f32,
-    /// Width and height of the picture.
-    pub size: UVec2,
-    /// Whether the pointer is on it, and nothing in front.
-    pub hovered: bool,
-    /// The pixel that was clicked in this frame.
-    pub clicked: Option<UVec2>,
-}
-
-impl View {
-    /// The picture position, in its pixels, under a place in the window.
-    pub fn picture_at(&self, at: egui::Pos2) -> Vec2 {
-        self.placement.picture_from_viewport(from_egui(at - self.rect.min) * self.factor)
-    }
-
-    /// Where a picture position, in its pixels, lies in the window.
-    pub fn window_at(&self, at: Vec2) -> egui::Pos2 {
-        let at = (self.placement.corner + at * self.placement.scale) / self.factor;
-        self.rect.min + egui::vec2(at.x, at.y)
     }
 }
 
@@ -340,10 +312,6 @@ fn steer(ui: &Ui, response: &Response, editor: &mut Editor) {
     };
     set_pose(camera, moved);
     editor.name_edit(name);
-}
-
-fn from_egui(vector: egui::Vec2) -> Vec2 {
-    Vec2::new(vector.x, vector.y)
 }
 
 /// Where the camera of these settings stands.

@@ -7,7 +7,7 @@ use glam::UVec2;
 use rayon::prelude::*;
 
 use crate::app::diagnostics::Legend;
-use crate::app::picture::display::Look;
+use crate::app::picture::look::Look;
 use crate::app::picture::viewport::Shown;
 use crate::app::ui::widgets::significant;
 use crate::error::{Error, Result};

@@ -10,7 +10,7 @@ use crate::app::command::Command;
 use crate::app::diagnostics::show_legends;
 use crate::app::jobs::dialogs::typed;
 use crate::app::panels::{self, Panel};
-use crate::app::picture::display::Look;
+use crate::app::picture::look::Look;
 use crate::app::picture::viewport::Shown;
 use crate::app::shell::bars;
 use crate::app::shell::bars::{Dropped, Typed};

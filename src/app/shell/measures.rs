@@ -10,15 +10,16 @@ use glam::UVec2;
 use super::App;
 use crate::app::command::Command;
 use crate::app::compare::maps::Map;
+use crate::app::compare::measure::Measure;
 use crate::app::compare::panel;
-use crate::app::compare::reference::{Measure, MeasureView, ReferenceOrigin};
+use crate::app::compare::reference::{MeasureView, ReferenceOrigin};
 use crate::app::compare::rows;
 use crate::app::compare::rows::Asked;
 use crate::app::compare::second_side::CompareLayout;
 use crate::app::document::Side;
 use crate::app::jobs::dialogs::Purpose;
-use crate::app::shell::status::samples;
 use crate::app::ui::theme;
+use crate::app::ui::words::samples;
 use crate::render::Picture;
 
 impl App {

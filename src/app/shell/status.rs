@@ -12,6 +12,7 @@ use crate::app::picture::viewport::Viewport;
 use crate::app::snapshots::{Snapshots, StripItem};
 use crate::app::ui::theme::{color, space};
 use crate::app::ui::widgets::{count, finite};
+use crate::app::ui::words::{percent, samples, seconds, time_left};
 use crate::image::tone::{Channel, Tone};
 use crate::render::{Layer, RenderStats};
 
@@ -91,11 +92,6 @@ fn stored_figures(ui: &mut Ui, item: &StripItem) {
         .on_hover_text("A snapshot, not the picture that is being rendered. Escape goes back.");
 }
 
-/// A number of samples in about two digits or more.
-pub fn samples(spp: f64) -> String {
-    if spp < 10.0 { format!("{spp:.1}") } else { format!("{spp:.0}") }
-}
-
 fn progress(ui: &mut Ui, stats: &RenderStats, engine: &LiveRender, turns: usize) {
     let spp = samples(stats.samples_per_pixel);
     figure(ui, &spp, "spp", "Samples per pixel so far.", 38.0);
@@ -138,11 +134,6 @@ fn ending(ui: &mut Ui, stats: &RenderStats, engine: &LiveRender, turns: usize) {
     ui.label(text).on_hover_text(format!("Until each pixel has {wanted} samples."));
 }
 
-/// Seconds that are left, in words.
-pub fn time_left(left: f64) -> String {
-    if left < 60.0 { format!("{:.0} s", left.ceil()) } else { seconds(left) }
-}
-
 /// At the pace so far; none before there is one, at the end, and where there is no end.
 fn seconds_left(stats: &RenderStats, wanted: u32) -> Option<f64> {
     let have = stats.samples_per_pixel;
@@ -164,25 +155,6 @@ fn figure(ui: &mut Ui, value: &str, unit: &str, help: &str, width: f32) {
             ui.label(RichText::new(unit).color(color::TEXT_DIM)).on_hover_text(help);
         }
     });
-}
-
-/// A fraction in percent, in about three digits.
-pub fn percent(fraction: f64) -> String {
-    let percent = 100.0 * fraction;
-    let decimals = match percent {
-        _ if percent < 10.0 => 2,
-        _ if percent < 100.0 => 1,
-        _ => 0,
-    };
-    format!("{percent:.decimals$}")
-}
-
-fn seconds(seconds: f64) -> String {
-    if seconds < 60.0 {
-        return format!("{seconds:.1} s");
-    }
-    let minutes = (seconds / 60.0).floor();
-    format!("{minutes:.0}:{:02.0} min", (seconds - 60.0 * minutes).floor())
 }
 
 fn zoom(ui: &mut Ui, scale: f32) {

@@ -11,7 +11,7 @@ use egui::ColorImage;
 use super::record::Record;
 use super::store::{Fresh, Listing, Store, StoredSnapshot};
 use super::thumbnail::{self, Thumbnail};
-use crate::app::shell::save::{header, receive};
+use crate::app::jobs::film_file::{header, receive};
 use crate::error::{Error, Result};
 use crate::image::exr;
 use crate::image::tone::Tone;

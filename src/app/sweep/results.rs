@@ -7,11 +7,10 @@ use egui::{Button, Context, DragValue, Grid, Label, Rect, RichText, ScrollArea, 
 use super::bar::BarAxis;
 use crate::app::command::Command;
 use crate::app::document::Editor;
-use crate::app::panels::explain;
-use crate::app::shell::status::time_left;
 use crate::app::sweep::{Results, Sweep};
 use crate::app::ui::theme::{color, space};
-use crate::app::ui::widgets::{finite, key_of, row_label, significant};
+use crate::app::ui::widgets::{explain, finite, key_of, row_label, significant};
+use crate::app::ui::words::time_left;
 use crate::format::percent;
 use crate::render::sweep::words::{headline, note, relative_time, remarks};
 use crate::render::sweep::{Gain, RankedTrial, Ranking, SweepProgress, TrialSource, Worth};

@@ -5,3 +5,4 @@ pub mod notices;
 pub mod sections;
 pub mod theme;
 pub mod widgets;
+pub mod words;

@@ -58,6 +58,11 @@ pub fn key_summary(path: &str) -> String {
     }
 }
 
+/// Small dim text that explains.
+pub fn explain(ui: &mut Ui, text: &str) {
+    ui.add(Label::new(RichText::new(text).small().color(color::TEXT_DIM)).wrap());
+}
+
 /// A label of fixed width that starts a row; hovering shows the help, `name` is what it says.
 pub fn row_label(ui: &mut Ui, name: &str, help: &str) -> Response {
     let size = vec2(space::LABEL, space::ROW_HEIGHT);

@@ -6,6 +6,8 @@ use egui::Rect;
 use egui::epaint::ViewportInPixels;
 use glam::{IVec2, UVec2};
 
+use super::gpu::{bind, texture};
+
 /// The pixels of the framebuffer that a part of the window covers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PixelRect {
@@ -49,9 +51,9 @@ impl GpuCanvas {
         view: &wgpu::Buffer,
     ) -> Self {
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT;
-        let texture = super::texture(device, "canvas", (size, format), usage);
+        let texture = texture(device, "canvas", (size, format), usage);
         let target = texture.create_view(&wgpu::TextureViewDescriptor::default());
-        let bindings = super::bind(device, layout, view, &target);
+        let bindings = bind(device, layout, view, &target);
         Self { size, target, bindings }
     }
 

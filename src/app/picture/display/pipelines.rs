@@ -2,7 +2,7 @@
 //! every branch for every pixel, so that a curve that is not shown would cost as much as the one
 //! that is: what is the same for a whole picture is settled when its pipeline is made.
 
-use super::Look;
+use crate::app::picture::look::Look;
 use crate::image::tone::{Channel, ToneCurve};
 
 /// What is settled for a whole picture.

@@ -3,7 +3,7 @@
 use egui::Pos2;
 use glam::{UVec2, Vec2, Vec3A};
 
-use crate::app::picture::viewport::View;
+use crate::app::picture::view::View;
 use crate::math::Ray;
 use crate::transport::camera::Camera;
 
