@@ -30,7 +30,7 @@ const REST: u32 = 9;
 /// What is measured: one picture, or those of A and B.
 #[derive(Clone)]
 struct MeasureTask {
-    held: Arc<LoadedReference>,
+    reference: Arc<LoadedReference>,
     pictures: Vec<Arc<Picture>>,
     tone: Tone,
 }
@@ -43,7 +43,7 @@ impl MeasureTask {
 
     /// Whether only time has passed between the two.
     fn is_like(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.held, &other.held)
+        Arc::ptr_eq(&self.reference, &other.reference)
             && self.tone == other.tone
             && self.pictures.len() == other.pictures.len()
     }
@@ -53,7 +53,7 @@ impl MeasureTask {
         let pixels: Vec<&[[f32; 4]]> =
             self.pictures.iter().map(|picture| picture.pixels.as_slice()).collect();
         let viewing = Viewing { tone: self.tone, ..Viewing::default() };
-        let errors = Errors::of(&pixels, &self.held.reference, viewing).unwrap_or_default();
+        let errors = Errors::of(&pixels, &self.reference.reference, viewing).unwrap_or_default();
         MeasureResult { errors: Arc::new(errors), took: begun.elapsed(), ended: Instant::now() }
     }
 }
@@ -99,12 +99,12 @@ struct MapTask {
 pub struct MeasuredReference {
     /// The threads that measure, which give way to the window's.
     pool: Arc<Pool>,
-    held: Option<Arc<LoadedReference>>,
+    loaded: Option<Arc<LoadedReference>>,
     loading: Option<Loading>,
     /// The scene that is open, and the files of the references of it and of others, the one that was
     /// loaded last first.
     scene: String,
-    preferences: Vec<(String, PathBuf)>,
+    files: Vec<(String, PathBuf)>,
     errors: Background<MeasureTask, MeasureResult>,
     map: Background<MapTask, Option<Map>>,
     /// How relMSE and FLIP of both sides went down.
@@ -123,13 +123,13 @@ impl MeasuredReference {
     ///
     /// # Errors
     /// When the system refuses to start them.
-    pub fn new(threads: Option<usize>, preferences: Vec<(String, PathBuf)>) -> Result<Self> {
+    pub fn new(threads: Option<usize>, files: Vec<(String, PathBuf)>) -> Result<Self> {
         Ok(Self {
             pool: Arc::new(Pool::new(threads, Priority::Background)?),
-            held: None,
+            loaded: None,
             loading: None,
             scene: String::new(),
-            preferences,
+            files,
             errors: Background::default(),
             map: Background::default(),
             histories: Default::default(),
@@ -141,8 +141,8 @@ impl MeasuredReference {
     }
 
     /// The reference.
-    pub fn held(&self) -> Option<&Arc<LoadedReference>> {
-        self.held.as_ref()
+    pub fn loaded(&self) -> Option<&Arc<LoadedReference>> {
+        self.loaded.as_ref()
     }
 
     /// Whether a reference is on its way.
@@ -163,24 +163,24 @@ impl MeasuredReference {
     /// Takes the reference away.
     pub fn remove(&mut self) {
         self.forget();
-        self.remember(None);
+        self.note_file(None);
     }
 
     /// The files of the references of scenes, the one that was loaded last first.
-    pub fn preferences(&self) -> &[(String, PathBuf)] {
-        &self.preferences
+    pub fn files(&self) -> &[(String, PathBuf)] {
+        &self.files
     }
 
-    fn remember(&mut self, file: Option<&Path>) {
-        self.preferences.retain(|(scene, _)| *scene != self.scene);
+    fn note_file(&mut self, file: Option<&Path>) {
+        self.files.retain(|(scene, _)| *scene != self.scene);
         if let Some(file) = file {
             let file = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
-            self.preferences.insert(0, (self.scene.clone(), file));
+            self.files.insert(0, (self.scene.clone(), file));
         }
     }
 
     fn forget(&mut self) {
-        self.held = None;
+        self.loaded = None;
         self.loading = None;
         self.histories = Default::default();
     }
@@ -196,7 +196,7 @@ impl MeasuredReference {
         }
         self.forget();
         scene.clone_into(&mut self.scene);
-        match self.preferences.iter().find(|(other, _)| other == scene) {
+        match self.files.iter().find(|(other, _)| other == scene) {
             Some((_, path)) => self.load(ctx, ReferenceOrigin::file(path.clone())),
             None => Ok(()),
         }
@@ -206,16 +206,16 @@ impl MeasuredReference {
     pub fn poll(&mut self) -> Result<()> {
         let Some(result) = self.loading.as_ref().and_then(Loading::poll) else { return Ok(()) };
         self.loading = None;
-        let held = result.inspect_err(|_| self.remember(None))?;
-        self.remember(held.path.as_deref());
-        self.held = Some(Arc::new(held));
+        let loaded = result.inspect_err(|_| self.note_file(None))?;
+        self.note_file(loaded.path.as_deref());
+        self.loaded = Some(Arc::new(loaded));
         self.histories = Default::default();
         Ok(())
     }
 
     /// Whether it is of another size than pictures of `size`.
     pub fn is_of_another_size(&self, size: UVec2) -> bool {
-        self.held.as_ref().is_some_and(|held| held.reference.matches(size).is_err())
+        self.loaded.as_ref().is_some_and(|loaded| loaded.reference.matches(size).is_err())
     }
 
     /// Brings the errors in line with what is looked at, one picture or those of A and B.
@@ -231,8 +231,8 @@ impl MeasuredReference {
         }
         let fits = |picture: &Arc<Picture>| !self.is_of_another_size(picture.size);
         let has_all = !pictures.is_empty() && pictures.iter().all(fits);
-        let task = self.held.clone().filter(|_| has_all);
-        let task = task.map(|held| MeasureTask { held, pictures, tone });
+        let task = self.loaded.clone().filter(|_| has_all);
+        let task = task.map(|reference| MeasureTask { reference, pictures, tone });
         let task = task.and_then(|task| self.in_time(ctx, task));
         let (wake, pool) = (ctx.clone(), self.pool.clone());
         let measure = move |task: &MeasureTask| pool.install(|| task.measure());

@@ -8,7 +8,7 @@ use glam::UVec2;
 
 use super::maps::{Difference, Map, MapKind, Noise};
 use super::measure::Measure;
-use super::region_figures::{PartTask, RegionFigures};
+use super::region_figures::{RegionFigures, RegionTask};
 use crate::app::document::{Compared, Document, Side};
 use crate::app::jobs::background::Background;
 use crate::app::jobs::live_render::{LiveRender, News};
@@ -20,7 +20,7 @@ use crate::render::session::{Seat, Sharing};
 use crate::render::{Area, Layer, Picture};
 
 /// The key that shows the other side while it is held.
-pub const FLIP: Key = Key::H;
+pub const FLIP_KEY: Key = Key::H;
 
 /// How A and B are shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -116,7 +116,7 @@ pub struct SecondSide {
     pub divider: f32,
     map: Background<BothPictures, Option<Map>>,
     figures: Background<[Arc<Picture>; 2], Comparison>,
-    part: Background<PartTask, RegionFigures>,
+    region_figures: Background<RegionTask, RegionFigures>,
     /// How the noise of A and of B went down.
     histories: [NoiseHistory; 2],
     /// The side of the main engine when they were last added to.
@@ -150,7 +150,7 @@ impl SecondSide {
             divider: 0.5,
             map: Background::default(),
             figures: Background::default(),
-            part: Background::default(),
+            region_figures: Background::default(),
             histories: Default::default(),
             noted: None,
         }
@@ -326,16 +326,22 @@ impl SecondSide {
         }
     }
 
-    /// Brings the figures of a rectangle in line with what is looked at, one picture or both.
-    pub fn update_part(&mut self, ctx: &Context, pictures: Vec<Arc<Picture>>, area: Option<Area>) {
-        let task = area.map(|area| PartTask { pictures, area });
+    /// Brings the figures of a region in line with what is looked at, one picture or both.
+    pub fn update_region_figures(
+        &mut self,
+        ctx: &Context,
+        pictures: Vec<Arc<Picture>>,
+        area: Option<Area>,
+    ) {
+        let task = area.map(|area| RegionTask { pictures, area });
         let wake = ctx.clone();
-        self.part.update(task, PartTask::same, RegionFigures::of, move || wake.request_repaint());
+        self.region_figures
+            .update(task, RegionTask::same, RegionFigures::of, move || wake.request_repaint());
     }
 
-    /// What is known of the rectangle, once it is.
-    pub fn part(&self) -> Option<&RegionFigures> {
-        self.part.done().map(|(_, part)| part)
+    /// The figures of the region, once they are known.
+    pub fn region_figures(&self) -> Option<&RegionFigures> {
+        self.region_figures.done().map(|(_, figures)| figures)
     }
 
     /// What is known of both sides, once both have a picture.
@@ -376,7 +382,7 @@ impl SecondSide {
         (look, active): (Look, Side),
         map: Option<&Map>,
     ) -> Shown {
-        if ctx.input(|input| input.key_down(FLIP)) && !ctx.text_edit_focused() {
+        if ctx.input(|input| input.key_down(FLIP_KEY)) && !ctx.text_edit_focused() {
             let [a, b] = pictures;
             let other = if active == Side::A { b } else { a };
             return Shown::One(other, look);

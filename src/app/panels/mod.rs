@@ -1,4 +1,9 @@
-//! The panels, one file each.
+//! Panels of settings in a column, one file each.
+//!
+//! - `column`: the column that they stand in.
+//! - `strategy`, `advanced`: toggles and presets, and what is behind them.
+//! - `volume`, `grids`, `emission`, `ramp`, `placement`: a volume, its grids, glow and place.
+//! - `lights`, `surfaces`, `camera`, `film`, `display`: the rest of the scene and of the view.
 
 pub mod advanced;
 pub mod camera;
@@ -18,6 +23,7 @@ pub use super::ui::sections::{folded_section, section};
 pub use super::ui::widgets::explain;
 
 use super::command::Command;
+use super::compare::panel::ComparePanel;
 use super::compare::reference::MeasuredReference;
 use super::compare::second_side::SecondSide;
 use super::diagnostics::Wanted;
@@ -42,16 +48,22 @@ pub struct Panel<'a> {
     pub guided_flights: Option<f32>,
     /// The other side of a comparison.
     pub second_side: &'a SecondSide,
-    /// How many sides take turns at the machine.
-    pub turns: usize,
     /// The reference and the errors against it.
     pub reference: &'a mut MeasuredReference,
     /// What is shown to understand the render.
     pub wanted: &'a mut Wanted,
-    /// Files that were open before, the last one first.
-    pub recent: &'a [String],
-    /// The one of them that a menu asks for.
-    pub reopened: &'a mut Option<String>,
     /// Commands that buttons ask for.
     pub commands: &'a mut Vec<Command>,
+}
+
+impl Panel<'_> {
+    /// The part of it that the panel of a comparison shows.
+    pub fn compare(&mut self) -> ComparePanel<'_> {
+        ComparePanel {
+            editor: self.editor,
+            second_side: self.second_side,
+            reference: self.reference,
+            commands: self.commands,
+        }
+    }
 }

@@ -3,7 +3,7 @@
 use egui::Context;
 use glam::UVec2;
 
-use super::App;
+use super::app::App;
 use crate::app::command::Command;
 use crate::app::jobs::dialogs::Purpose;
 use crate::app::panels::strategy;
@@ -27,7 +27,7 @@ impl App {
             Command::PauseResume => self.engine.set_paused(!self.engine.paused()),
             Command::Restart => {
                 self.engine.restart();
-                self.second_side.restart();
+                self.compare.second_side.restart();
             }
             Command::FrameVolume => self.frame_volume(),
             Command::FitPicture => self.viewport.zoom = Default::default(),
@@ -37,16 +37,16 @@ impl App {
             }
             Command::GoToPicture => self.viewport.wants_keyboard = true,
             Command::AutoExposure => self.expose(),
-            Command::FullScreen => self.set_full_screen(ctx, !self.full_screen),
+            Command::FullScreen => self.chrome.set_full_screen(ctx, !self.chrome.full_screen),
             Command::Start => {
-                self.start = match self.start.take() {
+                self.chrome.start = match self.chrome.start.take() {
                     Some(_) => None,
                     None => Some(StartRow::default()),
                 };
             }
-            Command::FoldPanels => self.folded = !self.folded,
+            Command::FoldPanels => self.chrome.folded = !self.chrome.folded,
             Command::Palette => {
-                self.palette = match self.palette.take() {
+                self.chrome.palette = match self.chrome.palette.take() {
                     Some(_) => None,
                     None => Some(Palette::default()),
                 };
@@ -56,35 +56,29 @@ impl App {
             Command::NormalSize => ctx.set_zoom_factor(1.0),
             Command::ResetWindow => self.reset_window(ctx),
             Command::Sweep => self.sweep.ask(&self.editor.document.settings),
-            Command::Shortcuts => self.help = !self.help,
+            Command::Shortcuts => self.chrome.help = !self.chrome.help,
             _ if self.execute_stored(ctx, command) || self.execute_measure(ctx, command) => {}
             _ => self.edit(command),
         }
         ctx.request_repaint();
     }
 
-    /// Gives the picture the whole screen, or menus and panels their place again.
-    pub(super) fn set_full_screen(&mut self, ctx: &Context, full: bool) {
-        self.full_screen = full;
-        ctx.send_viewport_cmd(egui::ViewportCommand::Fullscreen(full));
-    }
-
     /// Closes or takes back what is there beside the live picture, the front one first.
     pub(super) fn leave(&mut self, ctx: &Context) {
-        if self.help {
-            self.help = false;
-        } else if self.unsaved.losing.is_some() {
+        if self.chrome.help {
+            self.chrome.help = false;
+        } else if self.unsaved.pending.is_some() {
             self.stay();
         } else if self.sweep.open && self.sweep.results().is_some() {
             self.sweep.open = false;
-        } else if self.region.is_armed() {
-            self.region.remove();
-        } else if self.full_screen {
-            self.set_full_screen(ctx, false);
+        } else if self.compare.region.is_armed() {
+            self.compare.region.remove();
+        } else if self.chrome.full_screen {
+            self.chrome.set_full_screen(ctx, false);
         } else if self.snapshots.strip.shown().is_some() {
             self.snapshots.strip.show(None);
-        } else if !self.region.remove() && self.gizmo.selected.take().is_none() {
-            self.start = None;
+        } else if !self.compare.region.remove() && self.gizmo.selected.take().is_none() {
+            self.chrome.start = None;
         }
     }
 
@@ -92,12 +86,12 @@ impl App {
     /// hides parts of it.
     fn reset_window(&mut self, ctx: &Context) {
         ctx.set_zoom_factor(1.0);
-        self.set_full_screen(ctx, false);
-        self.folded = false;
-        self.sections.reset();
+        self.chrome.set_full_screen(ctx, false);
+        self.chrome.folded = false;
+        self.chrome.sections.reset();
         self.preferences.start = true;
         self.viewport.zoom = Default::default();
-        self.second_side.layout = Default::default();
+        self.compare.second_side.layout = Default::default();
         self.editor.document.tone = Default::default();
         self.editor.name_edit("display");
     }

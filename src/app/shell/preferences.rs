@@ -13,6 +13,8 @@ use crate::image::tone::{Tone, ToneCurve};
 
 /// The file, in the folder of the program's data.
 const FILE: &str = "window.json";
+/// The variable of the environment that names the data folder.
+const DATA: &str = "FLAMBEAU_DATA";
 /// Files that are remembered at most.
 const RECENT: usize = 10;
 /// Scenes whose references are remembered at most.
@@ -128,6 +130,13 @@ impl Preferences {
 /// A number that was chosen, or else `or`.
 fn sane(value: f32, or: f32) -> f32 {
     if value.is_finite() && value != 0.0 { value } else { or }
+}
+
+/// The folder of what outlasts a run: `chosen`, or what `FLAMBEAU_DATA` says, or where the system
+/// keeps the data of the user's programs; `None` where there is no such place.
+pub fn data_folder(chosen: Option<PathBuf>) -> Option<PathBuf> {
+    let named = || std::env::var_os(DATA).filter(|name| !name.is_empty()).map(PathBuf::from);
+    chosen.or_else(named).or_else(|| eframe::storage_dir("flambeau"))
 }
 
 /// The name of what was opened, the same from every folder.

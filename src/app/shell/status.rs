@@ -6,8 +6,9 @@ use glam::UVec2;
 
 use crate::app::command::Command;
 use crate::app::compare::panel;
+use crate::app::compare::second_side::SecondSide;
+use crate::app::document::Editor;
 use crate::app::jobs::live_render::LiveRender;
-use crate::app::panels::Panel;
 use crate::app::picture::viewport::Viewport;
 use crate::app::snapshots::{Snapshots, StripItem};
 use crate::app::ui::theme::{color, space};
@@ -21,14 +22,29 @@ const ZOOM_WIDTH: f32 = 70.0;
 /// Room that the value under the pointer takes.
 const PROBE_WIDTH: f32 = 280.0;
 
+/// What the status line shows and may change.
+pub struct StatusLine<'a> {
+    /// The document and its record of edits.
+    pub editor: &'a mut Editor,
+    /// The render of the side that is edited.
+    pub engine: &'a LiveRender,
+    /// The second side.
+    pub second_side: &'a SecondSide,
+    /// How many sides take turns at the machine.
+    pub turns: usize,
+    /// The viewport, for the zoom and the pixel under the pointer.
+    pub viewport: &'a Viewport,
+    /// The snapshots, one of which may be shown in place of the live picture.
+    pub snapshots: &'a Snapshots,
+    /// The layer that is shown in place of the picture.
+    pub layer: Option<Layer>,
+    /// Commands that buttons ask for.
+    pub commands: &'a mut Vec<Command>,
+}
+
 /// Shows the line.
-pub fn show(
-    ui: &mut Ui,
-    panel: &mut Panel<'_>,
-    engine: &LiveRender,
-    viewport: &Viewport,
-    snapshots: &Snapshots,
-) {
+pub fn show(ui: &mut Ui, panel: &mut StatusLine<'_>) {
+    let (engine, viewport, snapshots) = (panel.engine, panel.viewport, panel.snapshots);
     ui.horizontal_centered(|ui| {
         let (text, help) = if engine.paused() {
             ("Resume", "Go on sampling.")
@@ -40,12 +56,12 @@ pub fn show(
         if ui.add(button).on_hover_text(format!("{help}  [{key}]")).clicked() {
             panel.commands.push(Command::PauseResume);
         }
-        let stored = snapshots.strip.shown_item().filter(|_| panel.second_side.stored.is_none());
-        if stored.is_none() {
+        let snapshot = snapshots.strip.shown_item().filter(|_| panel.second_side.stored.is_none());
+        if snapshot.is_none() {
             bias(ui, panel);
         }
         match engine.picture() {
-            _ if let Some(item) = stored => stored_figures(ui, item),
+            _ if let Some(item) = snapshot => snapshot_figures(ui, item),
             Some(picture) => progress(ui, &picture.stats, engine, panel.turns),
             None => {
                 let opening = engine.opening().is_some() || engine.built().is_some();
@@ -71,7 +87,7 @@ pub fn show(
 }
 
 /// A picture that will never be quite right says so; of two, which one it is.
-fn bias(ui: &mut Ui, panel: &Panel<'_>) {
+fn bias(ui: &mut Ui, panel: &StatusLine<'_>) {
     if let Some(text) = panel::bias(&panel.editor.document, panel.second_side) {
         let help = "Ray marching is on (Strategy, Advanced): this picture is not quite right, and \
                     more samples will not mend that.";
@@ -80,7 +96,7 @@ fn bias(ui: &mut Ui, panel: &Panel<'_>) {
 }
 
 /// Of a snapshot in place of the live picture.
-fn stored_figures(ui: &mut Ui, item: &StripItem) {
+fn snapshot_figures(ui: &mut Ui, item: &StripItem) {
     let record = &item.record;
     if item.picture().is_none() {
         ui.label(RichText::new(format!("Reading {} …", record.name)).color(color::ACCENT));
@@ -217,7 +233,7 @@ fn curve_name(tone: Tone) -> &'static str {
 }
 
 /// Exposure and tone curve, from right to left.
-fn display(ui: &mut Ui, panel: &mut Panel<'_>) {
+fn display(ui: &mut Ui, panel: &mut StatusLine<'_>) {
     let mut edit = None;
     let tone = &mut panel.editor.document.tone;
     let button = Button::new(curve_name(*tone)).min_size(egui::vec2(58.0, 0.0));
@@ -239,7 +255,7 @@ fn display(ui: &mut Ui, panel: &mut Panel<'_>) {
         edit = Some("exposure");
     }
     ui.label(RichText::new("exposure").color(color::TEXT_DIM));
-    if let Some(layer) = panel.wanted.layer {
+    if let Some(layer) = panel.layer {
         let text = RichText::new(format!("Layer: {}", layer.name())).color(color::ACCENT);
         ui.label(text)
             .on_hover_text("Shown in place of the picture. Display, in the panel, has it.");
