@@ -1,5 +1,9 @@
-//! What is shown to understand a render: cells drawn over the picture, and maps in its place. None
-//! of it belongs to the scene, the strategy or the record of edits.
+//! Diagnostics of a render: cells drawn over the picture, maps in its place, and the ray of a pixel.
+//! None of it belongs to the scene, the strategy or the record of edits.
+//!
+//! - `cells`, `overlay`: the strongest cells of the volumes, gathered and drawn.
+//! - `ray`, `curves`, `plots`: the ray of a pixel, and its curves.
+//! - `legend`: the meaning of colors; `panel`: what is to be shown.
 
 mod cells;
 mod curves;
@@ -11,6 +15,7 @@ mod ray;
 
 use egui::{Context, Ui};
 
+use super::jobs::background::BackgroundPool;
 use super::jobs::live_render::LiveRender;
 use super::picture::look::Look;
 use super::picture::view::View;
@@ -34,7 +39,6 @@ pub struct Wanted {
 }
 
 /// What the user asked to see, and what is there to show it.
-#[derive(Default)]
 pub struct Diagnostics {
     /// What the user asked to see.
     pub wanted: Wanted,
@@ -43,6 +47,12 @@ pub struct Diagnostics {
 }
 
 impl Diagnostics {
+    /// Nothing is wanted yet; `pool` will gather cells and look into rays.
+    pub fn new(pool: &BackgroundPool) -> Self {
+        let (gathering, inspector) = (Gathering::new(pool), Inspector::new(pool));
+        Self { wanted: Wanted::default(), gathering, inspector }
+    }
+
     /// Brings session and cells in line with what is wanted. Called once a frame.
     pub fn update(&mut self, ctx: &Context, engine: &mut LiveRender) {
         engine.set_layer(self.wanted.layer);

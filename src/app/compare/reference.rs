@@ -15,13 +15,12 @@ pub use load::{LoadedReference, ReferenceOrigin};
 use super::maps::{Map, MapKind};
 use super::measure::{Measure, Plotted};
 use crate::app::document::Side;
-use crate::app::jobs::background::Background;
+use crate::app::jobs::background::{Background, BackgroundPool};
 use crate::error::Result;
 use crate::image::metrics::{Errors, Viewing};
 use crate::image::tone::Tone;
 use crate::render::Picture;
 use crate::render::compare::NoiseHistory;
-use crate::render::pool::{Pool, Priority};
 use load::Loading;
 
 /// Measuring rests so many times as long as it took, for the machine is there to render.
@@ -97,8 +96,6 @@ struct MapTask {
 
 /// The reference and what is measured against it.
 pub struct MeasuredReference {
-    /// The threads that measure, which give way to the window's.
-    pool: Arc<Pool>,
     loaded: Option<Arc<LoadedReference>>,
     loading: Option<Loading>,
     /// The scene that is open, and the files of the references of it and of others, the one that was
@@ -118,26 +115,21 @@ pub struct MeasuredReference {
 }
 
 impl MeasuredReference {
-    /// Without a reference, but with the files of those of some scenes; `threads` will measure
-    /// (`None`: one a core).
-    ///
-    /// # Errors
-    /// When the system refuses to start them.
-    pub fn new(threads: Option<usize>, files: Vec<(String, PathBuf)>) -> Result<Self> {
-        Ok(Self {
-            pool: Arc::new(Pool::new(threads, Priority::Background)?),
+    /// Without a reference, but with the files of those of some scenes; `pool` will measure.
+    pub fn new(pool: &BackgroundPool, files: Vec<(String, PathBuf)>) -> Self {
+        Self {
             loaded: None,
             loading: None,
             scene: String::new(),
             files,
-            errors: Background::default(),
-            map: Background::default(),
+            errors: Background::new(pool),
+            map: Background::new(pool),
             histories: Default::default(),
             noted: None,
             plotted: Plotted::default(),
             tone: Tone::default(),
             main: None,
-        })
+        }
     }
 
     /// The reference.
@@ -234,8 +226,8 @@ impl MeasuredReference {
         let task = self.loaded.clone().filter(|_| has_all);
         let task = task.map(|reference| MeasureTask { reference, pictures, tone });
         let task = task.and_then(|task| self.in_time(ctx, task));
-        let (wake, pool) = (ctx.clone(), self.pool.clone());
-        let measure = move |task: &MeasureTask| pool.install(|| task.measure());
+        let wake = ctx.clone();
+        let measure = MeasureTask::measure;
         self.errors.update(task, MeasureTask::same, measure, move || wake.request_repaint());
         self.note(seen);
     }

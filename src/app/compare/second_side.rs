@@ -10,7 +10,7 @@ use super::maps::{Difference, Map, MapKind, Noise};
 use super::measure::Measure;
 use super::region_figures::{RegionFigures, RegionTask};
 use crate::app::document::{Compared, Document, Side};
-use crate::app::jobs::background::Background;
+use crate::app::jobs::background::{Background, BackgroundPool};
 use crate::app::jobs::live_render::{LiveRender, News};
 use crate::app::picture::look::Look;
 use crate::app::picture::viewport::Shown;
@@ -138,8 +138,8 @@ impl BothPictures {
 }
 
 impl SecondSide {
-    /// None yet; the second side will have `threads` workers.
-    pub fn new(threads: Option<usize>) -> Self {
+    /// None yet; the second side will have `threads` workers, and `pool` makes maps and figures.
+    pub fn new(threads: Option<usize>, pool: &BackgroundPool) -> Self {
         Self {
             second_render: None,
             stored: None,
@@ -148,9 +148,9 @@ impl SecondSide {
             threads,
             layout: CompareLayout::default(),
             divider: 0.5,
-            map: Background::default(),
-            figures: Background::default(),
-            region_figures: Background::default(),
+            map: Background::new(pool),
+            figures: Background::new(pool),
+            region_figures: Background::new(pool),
             histories: Default::default(),
             noted: None,
         }

@@ -1,10 +1,10 @@
-//! The strongest cells of a scene's volumes, gathered behind the window's back.
+//! The strongest cells of a scene's volumes, gathered off the window's thread.
 
 use std::sync::Arc;
 
 use glam::Vec3A;
 
-use crate::app::jobs::background::Background;
+use crate::app::jobs::background::{Background, BackgroundPool};
 use crate::image::ramp::Scale;
 use crate::math::Aabb;
 use crate::transport::Scene;
@@ -166,8 +166,7 @@ impl<'a> Sieve<'a> {
     }
 }
 
-/// Gathers cells behind the window's back.
-#[derive(Default)]
+/// Gathers cells off the window's thread.
 pub struct Gathering(Background<CellSource, Cells>);
 
 /// What cells are gathered from.
@@ -207,6 +206,11 @@ impl CellSource {
 }
 
 impl Gathering {
+    /// No cells yet; `pool` will gather them.
+    pub fn new(pool: &BackgroundPool) -> Self {
+        Self(Background::new(pool))
+    }
+
     /// Brings the cells in line with what is wanted; `wake` is called when they are there.
     pub fn update(&mut self, wanted: Option<CellSource>, wake: impl FnOnce() + Send + 'static) {
         self.0.update(wanted, CellSource::has_cells_of, CellSource::gather, wake);

@@ -7,7 +7,7 @@ use glam::{UVec2, Vec2};
 
 use super::curves::{DENSITIES, RayCurve, SHARES};
 use super::plots;
-use crate::app::jobs::background::Background;
+use crate::app::jobs::background::{Background, BackgroundPool};
 use crate::app::jobs::live_render::LiveRender;
 use crate::app::picture::view::View;
 use crate::app::ui::theme::{color, space};
@@ -67,7 +67,6 @@ struct Found {
 }
 
 /// The picked pixel and what is known of its ray.
-#[derive(Default)]
 pub struct Inspector {
     /// Where in the picture, in shares of its sides.
     picked: Option<Vec2>,
@@ -77,10 +76,16 @@ pub struct Inspector {
 }
 
 impl Inspector {
+    /// No pixel is picked yet; `pool` will look into rays.
+    pub fn new(pool: &BackgroundPool) -> Self {
+        Self { picked: None, profile: Background::new(pool), at: None }
+    }
+
     /// Brings the table in line with pixel and scene; forgets both unless `wanted`.
     pub fn update(&mut self, ctx: &Context, wanted: bool, engine: &LiveRender) {
         if !wanted {
-            *self = Self::default();
+            (self.picked, self.at) = (None, None);
+            self.profile.clear();
             return;
         }
         let size = engine.picture().map(|picture| picture.size);
@@ -144,7 +149,7 @@ impl Inspector {
         let read = ui
             .horizontal_top(|ui| {
                 let read = ui.vertical(|ui| plots::show(ui, &profile.rows, at)).inner;
-                ui.vertical(|ui| readout(ui, row_at(&profile.rows, read.unwrap_or(at))));
+                ui.vertical(|ui| row_values(ui, row_at(&profile.rows, read.unwrap_or(at))));
                 read
             })
             .inner;
@@ -171,7 +176,7 @@ fn row_at(rows: &[ProfileRow], t: f32) -> ProfileRow {
 }
 
 /// The legend, with the values of one row.
-fn readout(ui: &mut Ui, row: ProfileRow) {
+fn row_values(ui: &mut Ui, row: ProfileRow) {
     ui.spacing_mut().item_spacing = vec2(space::ROW, 2.0);
     let distance = format!("At distance {}", significant(f64::from(row.t)));
     ui.label(RichText::new(distance).color(color::TEXT_STRONG));

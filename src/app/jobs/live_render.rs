@@ -47,7 +47,7 @@ pub enum News {
 /// The loader and the session, and what they are at.
 pub struct LiveRender {
     loader: Loader,
-    /// The volumes, which a rival shares.
+    /// The volumes, which the second side shares.
     cache: Arc<VolumeCache>,
     session: Arc<Session>,
     probe_placer: Arc<ProbePlacer>,

@@ -17,6 +17,7 @@ use crate::app::compare::second_side::SecondSide;
 use crate::app::compare::state::CompareState;
 use crate::app::diagnostics::Diagnostics;
 use crate::app::document::Editor;
+use crate::app::jobs::background::BackgroundPool;
 use crate::app::jobs::dialogs::Dialogs;
 use crate::app::jobs::live_render::LiveRender;
 use crate::app::picture::display;
@@ -89,6 +90,7 @@ impl App {
         let data_folder = data_folder(options.data);
         let preferences = data_folder.as_deref().map(Preferences::read).unwrap_or_default();
         let references = preferences.references.clone();
+        let pool = BackgroundPool::new(options.threads)?;
         let mut editor = Editor::default();
         editor.document.tone = preferences.tone();
         preferences.scale().inspect(|&scale| ctx.set_zoom_factor(scale));
@@ -96,14 +98,14 @@ impl App {
             editor,
             engine,
             compare: CompareState {
-                second_side: SecondSide::new(options.threads),
-                reference: MeasuredReference::new(options.threads, references)?,
+                second_side: SecondSide::new(options.threads, &pool),
+                reference: MeasuredReference::new(&pool, references),
                 region: PictureRegion::default(),
                 versus: None,
             },
             sweep: Sweep::new(options.threads),
             viewport: Viewport::default(),
-            diagnostics: Diagnostics::default(),
+            diagnostics: Diagnostics::new(&pool),
             gizmo: Gizmo::default(),
             snapshots: Snapshots::new(ctx, data_folder.clone())?,
             notices: Notices::default(),

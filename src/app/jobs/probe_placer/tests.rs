@@ -52,12 +52,12 @@ impl Scenes {
     }
 }
 
-/// A prober that waits at a gate before it places anything.
+/// A placer that waits at a gate before it places anything.
 fn probe_placer() -> (ProbePlacer, Arc<Gate>) {
     let session = Arc::new(Session::new(Some(2), || ()).unwrap());
     let gate = Arc::new(Gate::default());
     let at = gate.clone();
-    let probe_placer = ProbePlacer::with_maker(session, move |scene, stop| {
+    let probe_placer = ProbePlacer::with(session, move |scene, stop| {
         while !at.open.load(Ordering::Relaxed) && !stop() {
             std::thread::sleep(Duration::from_millis(1));
         }
