@@ -1,5 +1,5 @@
-//! Diagnostics of a render: cells drawn over the picture, maps in its place, and the ray of a pixel.
-//! None of it belongs to the scene, the strategy or the record of edits.
+//! Diagnostics of a render: cells over the picture, maps in its place, and the ray of a pixel. None
+//! of it belongs to the scene, the strategy or the record of edits.
 //!
 //! - `cells`, `overlay`: the strongest cells of the volumes, gathered and drawn.
 //! - `ray`, `curves`, `plots`: the ray of a pixel, and its curves.
@@ -27,7 +27,7 @@ use cells::{CellSource, CellValue, Gathering};
 pub use legend::{Legend, show as show_legends};
 use ray::Inspector;
 
-/// What the user asked to see.
+/// The diagnostics that the user asked for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Wanted {
     /// The cells over the picture.
@@ -38,9 +38,9 @@ pub struct Wanted {
     pub ray: bool,
 }
 
-/// What the user asked to see, and what is there to show it.
+/// The diagnostics asked for, and the data to show them.
 pub struct Diagnostics {
-    /// What the user asked to see.
+    /// The diagnostics that the user asked for.
     pub wanted: Wanted,
     gathering: Gathering,
     inspector: Inspector,
@@ -81,7 +81,7 @@ impl Diagnostics {
         Some(Look::Numbers(Scale::rounded(range)))
     }
 
-    /// What the colors of `look` mean, where they are the numbers of the layer.
+    /// The legend of `look`, where its colors are the numbers of the layer.
     pub fn legend(&self, look: Option<Look>) -> Option<Legend> {
         match look? {
             Look::Numbers(scale) => self.wanted.layer.map(|layer| Legend::of_layer(layer, scale)),

@@ -32,7 +32,7 @@ impl Column {
         self.cells.len()
     }
 
-    /// What it means.
+    /// Its meaning.
     pub fn help(&self) -> &'static str {
         self.help
     }

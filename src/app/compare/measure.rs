@@ -10,15 +10,15 @@ pub enum Measure {
     /// Squared errors in linear light, relative to the reference.
     #[default]
     RelMse,
-    /// What somebody notices who flips between the displayed pictures.
+    /// FLIP: the difference seen when flipping between the displayed pictures.
     Flip,
 }
 
 impl Measure {
-    /// Both of them.
+    /// Both measures.
     pub const ALL: [Self; 2] = [Self::RelMse, Self::Flip];
 
-    /// What it is called.
+    /// Its name.
     pub fn name(self) -> &'static str {
         match self {
             Self::RelMse => "relMSE",
@@ -41,7 +41,7 @@ impl Measure {
     }
 }
 
-/// What is plotted.
+/// The quantity that is plotted over time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Plotted {
     /// The noise.
@@ -52,7 +52,7 @@ pub enum Plotted {
 }
 
 impl Plotted {
-    /// What it is called.
+    /// Its name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Noise => "Noise",
@@ -60,7 +60,7 @@ impl Plotted {
         }
     }
 
-    /// What the plot shows.
+    /// An explanation of the plot.
     pub fn help(self) -> &'static str {
         match self {
             Self::Noise => {

@@ -15,7 +15,7 @@ const MARGIN: egui::Vec2 = vec2(44.0, 18.0);
 /// The colors of A and of B.
 pub const COLORS: [Color32; 2] = [color::CURVE_CHANCE, color::ACCENT];
 
-/// What the axes cover, in powers of ten.
+/// The range of the axes, in powers of ten.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Range {
     low: [f64; 2],
@@ -23,7 +23,7 @@ struct Range {
 }
 
 impl Range {
-    /// Of all points, out to whole powers of ten in time; `None` where there is none.
+    /// The range of all points, out to whole powers of ten in time; `None` where there is none.
     fn of(histories: [&NoiseHistory; 2]) -> Option<Self> {
         let mut points = histories.into_iter().flat_map(NoiseHistory::points).peekable();
         points.peek()?;
@@ -80,7 +80,7 @@ pub fn show(ui: &mut Ui, histories: [&NoiseHistory; 2], plotted: Plotted) {
     }
 }
 
-/// What a screen reader says of the plot.
+/// The plot in words, for screen readers.
 fn spoken(histories: [&NoiseHistory; 2], plotted: Plotted) -> String {
     let last = |history: &NoiseHistory| match history.points().last() {
         Some([_, value]) => plotted.label(*value),

@@ -14,7 +14,7 @@ use crate::app::ui::widgets::{capitalized, key_of, row, segments};
 use crate::render::compare::{Comparison, Verdict};
 use crate::render::turns::Share;
 
-/// What the panel of a comparison shows and may change.
+/// The state that the panel of a comparison shows and may change.
 pub struct ComparePanel<'a> {
     /// The document and its record of edits.
     pub editor: &'a mut Editor,
@@ -29,7 +29,7 @@ pub struct ComparePanel<'a> {
 /// Shows which side is edited, and how to begin or end a comparison.
 pub fn sides(ui: &mut Ui, panel: &mut ComparePanel<'_>) {
     if panel.second_side.stored.is_some() {
-        return stored(ui, panel);
+        return snapshot_sides(ui, panel);
     }
     let Some(compared) = panel.editor.document.compared else {
         button(ui, panel, Command::Compare, "Compare two strategies");
@@ -63,7 +63,7 @@ pub fn sides(ui: &mut Ui, panel: &mut ComparePanel<'_>) {
 }
 
 /// Shows what the live picture is compared with, where that is a snapshot.
-fn stored(ui: &mut Ui, panel: &mut ComparePanel<'_>) {
+fn snapshot_sides(ui: &mut Ui, panel: &mut ComparePanel<'_>) {
     let titles =
         [Side::A, Side::B].map(|side| side_title(side, &panel.editor.document, panel.second_side));
     titles.iter().for_each(|title| {

@@ -1,4 +1,4 @@
-//! What pictures are measured against: a reference, the errors of what is shown, and how they went
+//! A reference that pictures are measured against, the errors of what is shown, and how they went
 //! down.
 
 mod load;
@@ -26,7 +26,7 @@ use load::Loading;
 /// Measuring rests so many times as long as it took, for the machine is there to render.
 const REST: u32 = 9;
 
-/// What is measured: one picture, or those of A and B.
+/// A measurement: of one picture, or of those of A and B.
 #[derive(Clone)]
 struct MeasureTask {
     reference: Arc<LoadedReference>,
@@ -70,7 +70,7 @@ pub struct MeasureView {
     pub is_snapshot: bool,
 }
 
-/// What came of it; no errors where pictures and reference do not fit together.
+/// The result of a measurement; no errors where pictures and reference do not fit together.
 struct MeasureResult {
     errors: Arc<Vec<Errors>>,
     took: Duration,
@@ -90,7 +90,7 @@ struct MapTask {
     errors: Arc<Vec<Errors>>,
     measure: Measure,
     index: usize,
-    /// Whose map it is, where there are two.
+    /// The side whose map it is, where there are two.
     side: Option<Side>,
 }
 
@@ -107,7 +107,7 @@ pub struct MeasuredReference {
     /// How relMSE and FLIP of both sides went down.
     histories: [[NoiseHistory; 2]; 2],
     noted: Option<Instant>,
-    /// What the panel plots over time.
+    /// The quantity that the panel plots over time.
     pub plotted: Plotted,
     /// The tone that FLIP's histories are of, and the side in the first of them.
     tone: Tone,
@@ -232,7 +232,7 @@ impl MeasuredReference {
         self.note(seen);
     }
 
-    /// What should be measured now: `task`, or what was measured last while that rests.
+    /// The task to measure now: `task`, or the one measured last while measuring rests.
     fn in_time(&self, ctx: &Context, task: MeasureTask) -> Option<MeasureTask> {
         let done = self.errors.done().filter(|(done, _)| done.is_like(&task));
         let is_rough = task.pictures.iter().any(|picture| !picture.complete);

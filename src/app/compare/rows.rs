@@ -22,7 +22,7 @@ use crate::scene::Settings;
 /// Width of a field for pixels.
 const FIELD: f32 = 48.0;
 
-/// What a row asks for.
+/// The request of a row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Asked {
     /// A command.

@@ -77,7 +77,7 @@ impl CompareLayout {
         }
     }
 
-    /// What is computed for it of two pictures.
+    /// The map that it needs of two pictures.
     fn map(self) -> Option<MapKind> {
         match self {
             Self::Wipe | Self::Beside | Self::Error(..) => None,
@@ -92,7 +92,7 @@ impl CompareLayout {
 pub struct StoredSide {
     /// The side.
     pub side: Side,
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// The picture with its variance, once it is read.
     pub picture: Option<Arc<Picture>>,
@@ -107,7 +107,7 @@ pub struct SecondSide {
     pub stored: Option<StoredSide>,
     /// The comparison of the last frame.
     last: Option<Compared>,
-    /// Of the two sessions while there are two.
+    /// The tokens of the two sessions while there are two.
     seats: [Seat; 2],
     threads: Option<usize>,
     /// How both are shown.
@@ -123,7 +123,7 @@ pub struct SecondSide {
     noted: Option<Side>,
 }
 
-/// Both pictures, and what is to be made of them.
+/// Both pictures, and the map to make of them.
 #[derive(Clone)]
 struct BothPictures {
     pictures: [Arc<Picture>; 2],
@@ -344,7 +344,7 @@ impl SecondSide {
         self.region_figures.done().map(|(_, figures)| figures)
     }
 
-    /// What is known of both sides, once both have a picture.
+    /// The figures of both sides, once both have a picture.
     pub fn comparison(&self) -> Option<&Comparison> {
         self.figures.done().map(|(_, comparison)| comparison)
     }
@@ -374,7 +374,7 @@ impl SecondSide {
         map.as_ref().filter(|_| pair.kind == wanted)
     }
 
-    /// What the viewport shows of the `pictures` of both sides, `map` in their place if there is one.
+    /// The view of the `pictures` of both sides, `map` in their place if there is one.
     pub fn shown(
         &self,
         ctx: &Context,

@@ -1,4 +1,4 @@
-//! What is compared and measured: the second side, the reference and the region.
+//! The state of comparison: the second side, the reference and the region.
 
 use std::sync::Arc;
 

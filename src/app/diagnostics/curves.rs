@@ -7,11 +7,11 @@ use crate::transport::profile::ProfileRow;
 
 /// A curve as the legend explains it.
 pub struct RayCurve {
-    /// What it shows.
+    /// Its name.
     pub name: &'static str,
     /// The unit of its values.
     pub unit: &'static str,
-    /// What it means.
+    /// Its meaning.
     pub help: &'static str,
     /// Its color.
     pub color: Color32,

@@ -20,7 +20,7 @@ const DOT: f32 = 0.22;
 const DOT_SIDES: [f32; 2] = [1.5, 10.0];
 /// How much of the picture a dot covers.
 const DOT_OPACITY: f32 = 0.8;
-/// What is nearer to the camera than this share of a cell's edge is cut off.
+/// Lines nearer to the camera than this share of a cell's edge are cut off.
 const NEAR: f32 = 1e-4;
 
 /// The edges of a box as pairs of corners that differ in one bit.
@@ -58,7 +58,7 @@ pub fn paint(ui: &Ui, view: View, camera: &Camera, cells: &Cells, scale: Scale) 
 struct OverlayCanvas<'a> {
     view: View,
     camera: &'a Camera,
-    /// Of the picture in pixels.
+    /// Width and height of the picture in pixels.
     size: UVec2,
 }
 

@@ -1,4 +1,4 @@
-//! What can be shown to understand a render.
+//! The panel of diagnostics.
 
 use egui::Ui;
 

@@ -25,13 +25,13 @@ const COLUMNS: [f32; 2] = [110.0, 50.0];
 /// Height of a row of the legend.
 const ROW: f32 = 15.0;
 
-/// What the ray is looked into with.
+/// The scene and the pixel whose ray is looked into.
 #[derive(Clone)]
 struct RayScene {
     scene: Arc<Scene>,
     probes: Option<Arc<Probes>>,
     pixel: UVec2,
-    /// Of the picture.
+    /// Width and height of the picture in pixels.
     size: UVec2,
 }
 
@@ -58,7 +58,7 @@ impl RayScene {
     }
 }
 
-/// What was found along a ray.
+/// The findings along a ray.
 struct Found {
     /// Kept for the next ray of the same picture: what pays in it takes a while to find out.
     frame: Arc<Frame>,

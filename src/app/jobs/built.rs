@@ -14,9 +14,9 @@ pub type Grids = HashMap<String, Vec<GridDescription>>;
 /// A built scene and the settings that it was built from.
 #[derive(Clone)]
 pub struct BuiltScene {
-    /// What it was built from.
+    /// The settings that it was built from.
     pub settings: Settings,
-    /// What was guessed for a bare volume.
+    /// The guesses made for a bare volume.
     pub notes: Vec<Note>,
     /// Ready to sample.
     pub scene: Arc<Scene>,

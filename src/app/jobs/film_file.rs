@@ -16,7 +16,7 @@ pub fn receive(path: &Path, film: &mpsc::Receiver<Film>) -> Result<Film> {
     })
 }
 
-/// What the snapshot says about how it came about, in so many seconds and so many of CPU time.
+/// The header of a snapshot of `settings`, rendered in so many seconds and so many of CPU time.
 pub fn header(settings: &Settings, [seconds, cpu_seconds]: [f64; 2]) -> Result<SnapshotHeader> {
     let strategy = toml::to_string(&settings.strategy)
         .map_err(|error| Error::invalid("", "strategy", error.to_string()))?;

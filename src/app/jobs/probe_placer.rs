@@ -139,7 +139,7 @@ impl Shared {
 }
 
 impl PlacerState {
-    /// What is known of the probes of `built`: `None` if they have to be placed first. Lets go of
+    /// The probes of `built` as far as known: `None` if they have to be placed first. Lets go of
     /// those that no strategy of the same scene could use.
     fn known(&mut self, built: &BuiltScene) -> Option<Option<Arc<Probes>>> {
         self.ready = self.ready.take().filter(|(source, _)| same_places(source, built));

@@ -32,13 +32,13 @@ use super::jobs::built::Grids;
 use crate::math::Aabb;
 use crate::scene::Note;
 
-/// What a panel may read and change.
+/// The state that a panel may read and change.
 pub struct Panel<'a> {
     /// The document and its record of edits.
     pub editor: &'a mut Editor,
     /// The grids of all files seen so far.
     pub grids: &'a Grids,
-    /// What was guessed when a bare volume was opened.
+    /// The guesses made when a bare volume was opened.
     pub notes: &'a [Note],
     /// The box around all that fills space, or around the camera's target where nothing does.
     pub bounds: Aabb,
@@ -50,7 +50,7 @@ pub struct Panel<'a> {
     pub second_side: &'a SecondSide,
     /// The reference and the errors against it.
     pub reference: &'a mut MeasuredReference,
-    /// What is shown to understand the render.
+    /// The diagnostics that are shown.
     pub wanted: &'a mut Wanted,
     /// Commands that buttons ask for.
     pub commands: &'a mut Vec<Command>,

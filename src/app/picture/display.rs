@@ -42,12 +42,12 @@ struct ViewUniform {
 /// Pictures that can be shown at once.
 pub const PANES: usize = 2;
 
-/// What of a picture is on the graphics card, and how.
+/// The data of a picture on the graphics card, and its coding.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Upload {
     source: TextureData,
-    /// As what its light is shown, if that is settled here: of a coarse picture this is worked out
-    /// for its few texels, not for every pixel of the window.
+    /// The tone that its light is coded with, if that is done here: of a coarse picture this is worked
+    /// out for its few texels, not for every pixel of the window.
     coded: Option<Tone>,
 }
 
@@ -70,7 +70,7 @@ impl Upload {
     }
 }
 
-/// Of the `values` of all pixels, one a block.
+/// One of the `values` of all pixels for each block.
 fn blocks<'a, T: bytemuck::NoUninit>(picture: &Picture, values: &'a [T]) -> Cow<'a, [u8]> {
     if picture.block_log2 == 0 {
         return Cow::Borrowed(bytemuck::cast_slice(values));
@@ -85,7 +85,7 @@ fn corners<'a, T>(picture: &Picture, values: &'a [T]) -> impl Iterator<Item = &'
     lines.flat_map(move |line| line.iter().step_by(side))
 }
 
-/// What the draw call needs on the graphics card; lives among egui's callback resources.
+/// The resources of the draw call on the graphics card; lives among egui's callback resources.
 struct Display {
     pipelines: Pipelines,
     layout: wgpu::BindGroupLayout,
@@ -97,11 +97,11 @@ struct GpuPane {
     view: wgpu::Buffer,
     shown: Option<UploadedPicture>,
     canvas: Option<GpuCanvas>,
-    /// What is drawn on the canvas, if anything.
+    /// The state drawn on the canvas, if anything is.
     drawn: Option<DrawnState>,
 }
 
-/// What is drawn on a canvas.
+/// The state drawn on a canvas.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct DrawnState {
     view: ViewUniform,
@@ -133,7 +133,7 @@ pub fn largest_size(state: &RenderState) -> u32 {
 pub struct Shot {
     /// The picture.
     pub picture: Arc<Picture>,
-    /// What of it.
+    /// The data of it that is shown, and how.
     pub look: Look,
     /// Where it lies, from the corner of `area`.
     pub placement: Placement,

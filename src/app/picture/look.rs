@@ -4,7 +4,7 @@ use crate::image::ramp::Scale;
 use crate::image::tone::Tone;
 use crate::render::Picture;
 
-/// What of a picture is shown.
+/// The data of a picture that is shown, and how.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Look {
     /// Its light, exposed and curved.

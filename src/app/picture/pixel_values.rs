@@ -47,7 +47,7 @@ pub fn paint(
     }
 }
 
-/// What is written into a pixel, line by line.
+/// The text written into a pixel, line by line.
 fn lines(picture: &Picture, look: Look, pixel: UVec2) -> Vec<String> {
     let index = pixel.y as usize * picture.size.x as usize + pixel.x as usize;
     let light = match look {

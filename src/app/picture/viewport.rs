@@ -42,7 +42,7 @@ pub struct Probe {
     pub number: Option<(f32, Option<Layer>)>,
 }
 
-/// What the viewport shows.
+/// The pictures that the viewport shows.
 #[derive(Clone, Debug)]
 pub enum Shown {
     /// No picture yet.
@@ -59,9 +59,9 @@ pub enum Shown {
 struct ViewportPane<'p> {
     picture: &'p Arc<Picture>,
     look: Look,
-    /// What the picture is laid out in.
+    /// The area that the picture is laid out in.
     area: Rect,
-    /// What is seen of that.
+    /// The part of that area that is seen.
     clip: Rect,
 }
 
@@ -105,7 +105,7 @@ impl Shown {
 pub struct Viewport {
     /// How the picture is laid out.
     pub zoom: Zoom,
-    /// What is under the pointer.
+    /// The pixel under the pointer and its value.
     pub probe: Option<Probe>,
     /// Whether the keyboard is to go to the picture.
     pub wants_keyboard: bool,
@@ -157,7 +157,7 @@ impl Viewport {
     }
 
     /// Shows what there is in the rest of `ui` and lets the hand move camera and zoom, or draw the
-    /// rectangle. Gives where the pictures lie, those of a wipe as one.
+    /// region. Gives where the pictures lie, those of a wipe as one.
     pub fn show(
         &mut self,
         ui: &mut Ui,

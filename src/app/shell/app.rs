@@ -136,7 +136,7 @@ impl App {
         &self.compare.second_side
     }
 
-    /// The rectangle that figures are told of.
+    /// The region that figures are told of.
     pub fn region(&self) -> &PictureRegion {
         &self.compare.region
     }

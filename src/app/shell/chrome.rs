@@ -1,4 +1,4 @@
-//! What is around the picture, and which of it is shown.
+//! The parts of the window around the picture, and which of them are shown.
 
 use egui::{Context, Frame};
 
@@ -27,8 +27,8 @@ pub struct Chrome {
 }
 
 impl Chrome {
-    /// As `preferences` have it. `is_plain` says that no file was asked for, `cleared` that each
-    /// frame begins in the color of the panels.
+    /// Chrome as `preferences` have it. `is_plain` says that no file was asked for, `cleared` that
+    /// each frame begins in the color of the panels.
     pub fn new(ctx: &Context, preferences: &Preferences, is_plain: bool, cleared: bool) -> Self {
         Self {
             folded: preferences.folded,

@@ -82,7 +82,7 @@ impl App {
         }
     }
 
-    /// Brings what is remembered of the window and the display back to the first start, and what
+    /// Brings the preferences of the window and the display back to the first start, and what
     /// hides parts of it.
     fn reset_window(&mut self, ctx: &Context) {
         ctx.set_zoom_factor(1.0);

@@ -16,7 +16,7 @@ pub struct FileRequests {
     dialog: Option<Dialog>,
     /// The bar to type a path in, while it is open.
     pub path_bar: Option<PathBar>,
-    /// What is to be saved once the scene is built.
+    /// The saves that wait until the scene is built.
     pub waiting: Vec<(Purpose, PathBuf)>,
     /// The snapshot that a path is being asked for, where one was shown.
     pub subject: Option<String>,

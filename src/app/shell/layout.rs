@@ -1,4 +1,4 @@
-//! What is where: bars, the panel column, the picture with what comes and goes at its edges.
+//! The layout: bars, the panel column, the picture with the rows that come and go at its edges.
 
 use std::path::PathBuf;
 
@@ -159,17 +159,17 @@ impl App {
             .inner
     }
 
-    /// What the picture area shows.
+    /// The pictures that the picture area shows.
     pub(super) fn shown(&self, ctx: &Context) -> Shown {
         let tone = self.editor.document.tone;
         let look = Look::Picture(tone);
         let map = self.compare.map();
         if self.compare.versus.is_none()
-            && let Some(stored) = self.snapshots.picture()
+            && let Some(snapshot) = self.snapshots.picture()
         {
             return match map {
                 Some(map) => Shown::One(map.picture.clone(), map.look),
-                None => Shown::One(stored.clone(), look),
+                None => Shown::One(snapshot.clone(), look),
             };
         }
         let Some(picture) = self.engine.picture() else { return Shown::Nothing };
@@ -201,7 +201,7 @@ impl App {
         }
     }
 
-    /// What to begin with, where it is wanted.
+    /// Shows the start row, where it is wanted.
     fn start_row(&mut self, ui: &mut Ui) {
         let Some(start) = &mut self.chrome.start else { return };
         let row = egui::Panel::bottom("start").frame(theme::panel_frame());

@@ -32,7 +32,7 @@ const SNAPSHOTS: [&[Command]; 4] = [
 ];
 const HELP: [&[Command]; 2] = [&[Command::Start], &[Command::Palette, Command::Shortcuts]];
 
-/// What the menus show and ask for.
+/// The contents of the menus, and where their requests go.
 pub struct MenuItems<'a> {
     /// The document, for the names of the edits that undo and redo are about.
     pub editor: &'a Editor,

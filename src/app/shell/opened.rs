@@ -1,4 +1,4 @@
-//! What is open, as the user named it.
+//! The scene that is open, as the user named it.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use crate::scene::Note;
 pub struct Opened {
     /// Its path or `builtin:NAME`; of a snapshot the name in the strip.
     pub source: String,
-    /// What was guessed when it was opened.
+    /// The guesses made when it was opened.
     pub notes: Vec<Note>,
 }
 

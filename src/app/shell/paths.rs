@@ -64,7 +64,7 @@ impl App {
         }
     }
 
-    /// What saving writes at this moment; `None` where there is nothing yet.
+    /// The content that saving writes at this moment; `None` where there is nothing yet.
     fn content(&self, ctx: &Context, purpose: Purpose) -> Option<Content> {
         if self.files.subject.is_some() && matches!(purpose, Purpose::SaveExr | Purpose::SavePng) {
             return self.snapshot_content(purpose);

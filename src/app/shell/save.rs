@@ -16,13 +16,13 @@ use crate::render::publish::resolve;
 use crate::render::{Film, Picture};
 use crate::scene::{self, Settings};
 
-/// What is to be written.
+/// The content of a file to write.
 pub enum Content {
     /// A snapshot: the linear picture with its layers and all that is needed to go on.
     Exr {
         /// The film, once the session has copied it.
         film: mpsc::Receiver<Film>,
-        /// What the film shows; its size, seed and limit are those of the film.
+        /// The settings of the film, with its size, seed and limit.
         settings: Settings,
         /// Seconds spent on it, and CPU time.
         seconds: [f64; 2],
@@ -36,7 +36,7 @@ pub enum Content {
     },
     /// A scene file.
     Scene(Settings),
-    /// What another file holds.
+    /// The content of another file.
     Copy(PathBuf),
     /// A picture kept earlier, as shown.
     Shown {

@@ -52,7 +52,7 @@ impl App {
         self.snapshots.keep(keep);
     }
 
-    /// What to call a source: a snapshot of the strip by its name.
+    /// The name of a source: of a snapshot of the strip its own.
     pub(super) fn name_of(&self, source: String) -> String {
         self.snapshots.name_of(Path::new(&source)).map_or(source.clone(), str::to_owned)
     }
@@ -125,7 +125,7 @@ impl App {
                 picture: item.picture().filter(|picture| !picture.variance.is_empty()).cloned(),
                 is_biased: item.record.strategy.ends_with("biased"),
             });
-        // Noise is told of both sides, and of a rectangle.
+        // Noise is told of both sides, and of a region.
         let measures = self.compare.versus.is_some() || self.compare.region.is_set();
         self.snapshots.strip.wants_variance = measures;
     }
@@ -155,7 +155,7 @@ impl App {
         }
     }
 
-    /// What saving writes of the snapshot that was shown when it was asked for; `None` where it is
+    /// The content to save of the snapshot that was shown when it was asked for; `None` where it is
     /// not there (any more).
     pub(super) fn snapshot_content(&self, purpose: Purpose) -> Option<Content> {
         let item = self.subject()?;

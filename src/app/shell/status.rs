@@ -22,7 +22,7 @@ const ZOOM_WIDTH: f32 = 70.0;
 /// Room that the value under the pointer takes.
 const PROBE_WIDTH: f32 = 280.0;
 
-/// What the status line shows and may change.
+/// The contents of the status line, and what it may change.
 pub struct StatusLine<'a> {
     /// The document and its record of edits.
     pub editor: &'a mut Editor,
@@ -95,7 +95,7 @@ fn bias(ui: &mut Ui, panel: &StatusLine<'_>) {
     }
 }
 
-/// Of a snapshot in place of the live picture.
+/// Shows the figures of a snapshot in place of the live picture.
 fn snapshot_figures(ui: &mut Ui, item: &StripItem) {
     let record = &item.record;
     if item.picture().is_none() {
@@ -142,7 +142,7 @@ fn progress(ui: &mut Ui, stats: &RenderStats, engine: &LiveRender, turns: usize)
 /// How long a render with an end will take to get there, one of so many that take turns.
 fn ending(ui: &mut Ui, stats: &RenderStats, engine: &LiveRender, turns: usize) {
     let wanted = engine.built().map_or(0, |built| built.settings.film.spp);
-    // A rectangle that gets all samples has another pace than the picture.
+    // A region that gets all samples has another pace than the picture.
     let is_whole = engine.picture().is_some_and(|picture| picture.focus.is_none());
     let Some(left) = seconds_left(stats, wanted).filter(|_| is_whole) else { return };
     let left = left * turns.max(1) as f64;
@@ -203,7 +203,7 @@ fn probe(ui: &mut Ui, viewport: &Viewport) {
         .on_hover_text("The pixel under the pointer and its linear red, green and blue.");
 }
 
-/// What the numbers of a layer count.
+/// The unit of the numbers of a layer.
 fn unit_of(layer: Layer) -> &'static str {
     match layer {
         Layer::Depth => "length",
@@ -224,7 +224,7 @@ fn channel(value: f32) -> String {
     }
 }
 
-/// What the picture is shown by, in a word.
+/// The name of the tone curve, or of the channel shown in its place.
 fn curve_name(tone: Tone) -> &'static str {
     match tone.channel {
         Channel::Color => tone.curve.name(),

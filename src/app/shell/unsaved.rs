@@ -9,7 +9,7 @@ use crate::scene::Settings;
 /// The scene as it is on the disk, or on its way there.
 #[derive(Debug, Default)]
 pub(super) struct UnsavedChanges {
-    /// As it was opened or saved last.
+    /// The scene as it was opened or saved last.
     saved: Settings,
     /// Scenes that are being written.
     writing: Vec<(PathBuf, Settings)>,

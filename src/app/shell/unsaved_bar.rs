@@ -13,7 +13,7 @@ pub enum PendingAction {
     Open(String),
 }
 
-/// What the user says to it.
+/// The user's answer to the question.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UnsavedAnswer {
     /// Save the scene first.

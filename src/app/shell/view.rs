@@ -1,4 +1,4 @@
-//! The view as it is, with its figures in words and tables, to be saved.
+//! The view on the screen, with its figures in words and tables, to be saved.
 
 use egui::Context;
 
@@ -9,7 +9,7 @@ use crate::app::picture::viewport::Shown;
 use crate::app::shell::export::SavedView;
 
 impl App {
-    /// The view as it is.
+    /// The view on the screen.
     pub(super) fn saved_view(&self, ctx: &Context) -> SavedView {
         let shown = self.shown(ctx);
         let names = match shown {
@@ -29,7 +29,7 @@ impl App {
         }
     }
 
-    /// What the colors of what is shown mean, where they are not those of the picture.
+    /// The legend of what is shown, where its colors are not those of the picture.
     pub(super) fn legend(&self, shown: &Shown) -> Option<Legend> {
         let map = self.compare.map().map(|map| Legend::of_map(map.kind, map.key));
         map.or_else(|| shown.is_false_color().then(Legend::of_stops))

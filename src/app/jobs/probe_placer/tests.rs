@@ -83,7 +83,7 @@ fn wait(probe_placer: &ProbePlacer, will_do: impl Fn(&Picture) -> bool) -> Arc<P
     }
 }
 
-/// What a render that starts with its probes comes to.
+/// The film of a headless render, which starts with its probes.
 fn headless(built: &BuiltScene) -> Film {
     let job = RenderJob {
         sampler: Arc::new(Frame::new(built.scene.clone(), SIZE, built.settings.film.seed)),
