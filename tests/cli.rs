@@ -1,5 +1,9 @@
 //! The program from end to end: what it writes, prints and returns.
 
+#[path = "cli/interrupts.rs"]
+mod interrupts;
+#[path = "cli/losses.rs"]
+mod losses;
 #[path = "cli/path_versions.rs"]
 mod path_versions;
 #[path = "cli/sweep.rs"]
@@ -510,39 +514,46 @@ fn stop_with(signal: rustix::process::Signal) {
     use std::time::{Duration, Instant};
 
     let place = Place::new();
-    let mut child = Command::new(env!("CARGO_BIN_EXE_flambeau"))
-        .current_dir(place.0.path())
-        .args(["render", "scene.toml", "-o", "cut.exr", "--spp", "1000000", "--size", "200x150"])
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap();
-    std::thread::sleep(Duration::from_millis(700));
-    kill_process(Pid::from_child(&child), signal).unwrap();
-    // As `timeout` does, a second one at once; the program may be done by then.
-    std::thread::sleep(Duration::from_millis(5));
-    let _ = kill_process(Pid::from_child(&child), signal);
-    let start = Instant::now();
-    let status = child.wait().unwrap();
-    assert_eq!(status.code(), Some(130));
-    assert!(start.elapsed() < Duration::from_secs(20), "it went on for {:?}", start.elapsed());
-    let (_, most) = read_snapshot(&place.path("cut.exr")).unwrap().film.sample_range();
+    let film = |name: &str| read_snapshot(&place.path(name)).ok().map(|snapshot| snapshot.film);
+    // A machine with much else to do is given more time to get to the first sample.
+    for patience in [700, 3000, 12_000, 48_000] {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_flambeau"))
+            .current_dir(place.0.path())
+            .args(["render", "scene.toml", "-o", "cut.exr", "--spp", "1000000"])
+            .args(["--size", "200x150"])
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        std::thread::sleep(Duration::from_millis(patience));
+        kill_process(Pid::from_child(&child), signal).unwrap();
+        // As `timeout` does, a second one at once; the program may be done by then.
+        let _ = kill_process(Pid::from_child(&child), signal);
+        let start = Instant::now();
+        let status = child.wait().unwrap();
+        assert!(start.elapsed() < Duration::from_secs(20), "it went on for {:?}", start.elapsed());
+        if film("cut.exr").is_some() {
+            assert_eq!(status.code(), Some(130));
+            break;
+        }
+    }
+    let (_, most) = film("cut.exr").expect("nothing was rendered").sample_range();
     assert!(most > 0);
 
     let spp = (most + 1).to_string();
     let common = ["render", "scene.toml", "--size", "200x150", "--spp", &spp];
     place.succeed(&[&common[..], &["-o", "resumed.exr", "--resume", "cut.exr"]].concat());
     place.succeed(&[&common[..], &["-o", "all.exr"]].concat());
-    let film = |name: &str| read_snapshot(&place.path(name)).unwrap().film;
-    assert_eq!(film("resumed.exr"), film("all.exr"));
+    assert!(film("resumed.exr").is_some() && film("resumed.exr") == film("all.exr"));
 }
 
 #[test]
 fn a_time_limit_ends_the_render() {
     let place = Place::new();
-    place.succeed(&["render", "scene.toml", "-o", "out.npy", "--time", "0.3", "--stats", "s.json"]);
+    let render = ["render", "scene.toml", "-o", "out.npy", "--preset", "baseline"];
+    place.succeed(&[&render[..], &["--time", "1", "--stats", "s.json"]].concat());
     let stats = json(&place.path("s.json"));
     assert!(stats["spp"].as_f64().unwrap() > 4.0, "the scene's spp was taken for a limit");
-    assert!((0.3..10.0).contains(&stats["wall_seconds"].as_f64().unwrap()));
+    assert!((1.0..10.0).contains(&stats["wall_seconds"].as_f64().unwrap()));
 }
 
 #[test]

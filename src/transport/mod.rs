@@ -27,3 +27,6 @@ mod weight_window;
 pub use frame::{Frame, PreparedFrame};
 pub use sample::{PATH_VERSION, PathSample, PixelSampler, Prepared, SampleNumber};
 pub use scene::Scene;
+
+#[cfg(test)]
+mod tests;

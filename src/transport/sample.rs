@@ -137,15 +137,15 @@ impl Contributions {
 }
 
 /// What the pilot pass of a picture has found, on which all samples of a pixel but the first rest.
-/// Only [`PixelSampler::prepare`] makes one.
+/// [`PixelSampler::prepare`] makes it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prepared {
     pub(super) guided_flights: Option<f32>,
 }
 
 impl Prepared {
-    /// Nothing was to be found.
-    pub(super) const NOTHING: Self = Self { guided_flights: None };
+    /// For samplers whose later samples rest on nothing.
+    pub const NOTHING: Self = Self { guided_flights: None };
 
     /// Guided flights of a camera ray, relative to those that the probes propose; 0 where none pay.
     /// `None` where no pilot decides it.

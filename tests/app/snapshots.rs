@@ -92,7 +92,7 @@ fn write_snapshot(path: &Path, settings: &Settings, spp: u32) {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         path_version: PATH_VERSION,
         wall_seconds: 1000.0,
-        files: scene::fingerprints(settings).unwrap(),
+        files: scene::fingerprints(settings, NO_PROGRESS).unwrap(),
         ..SnapshotHeader::default()
     };
     exr::write(path, &headless(settings, spp), &header).unwrap();

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::mpsc;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, NO_PROGRESS, Result};
 use crate::image::exr::SnapshotHeader;
 use crate::render::Film;
 use crate::scene::{self, Settings};
@@ -29,7 +29,7 @@ pub fn header(settings: &Settings, [seconds, cpu_seconds]: [f64; 2]) -> Result<S
         path_version: PATH_VERSION,
         wall_seconds: seconds,
         cpu_seconds_render: cpu_seconds,
-        files: scene::fingerprints(settings)?,
+        files: scene::fingerprints(settings, NO_PROGRESS)?,
         ..SnapshotHeader::default()
     })
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::app::ui::notices::{Level, Notice};
 use crate::app::ui::widgets::significant;
-use crate::error::{Error, Result};
+use crate::error::{Error, NO_PROGRESS, Result};
 use crate::image::exr::{Snapshot, SnapshotHeader, read_info, read_snapshot};
 use crate::render::estimate::samples_per_pixel;
 use crate::render::{Film, Resume};
@@ -66,7 +66,7 @@ fn samples(
     header: &SnapshotHeader,
     settings: &Settings,
 ) -> Result<(Film, Vec<String>), String> {
-    let files = scene::fingerprints(settings).map_err(|error| error.to_string())?;
+    let files = scene::fingerprints(settings, NO_PROGRESS).map_err(|error| error.to_string())?;
     let compatibility = scene::compatibility(header, name, settings, &files);
     let compatibility = compatibility.map_err(|error| error.to_string())?;
     if let Some(blocker) = compatibility.blocker {
@@ -112,7 +112,7 @@ mod tests {
             version: env!("CARGO_PKG_VERSION").to_owned(),
             path_version: PATH_VERSION,
             wall_seconds: 7.0,
-            files: scene::fingerprints(&settings).unwrap(),
+            files: scene::fingerprints(&settings, NO_PROGRESS).unwrap(),
             ..SnapshotHeader::default()
         };
         let mut film = Film::new(UVec2::new(3, 2)).unwrap();
