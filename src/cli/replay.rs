@@ -6,8 +6,10 @@ use std::sync::Arc;
 use clap::Args;
 use glam::{UVec2, Vec3A};
 
+use super::console::print;
+use super::exit::{Exit, Refusal};
 use super::scene_source::SceneArguments;
-use super::{Exit, Refusal, print};
+use super::values::parse_pixel;
 use crate::error::{Error, NO_PROGRESS};
 use crate::scene::{self, VolumeCache};
 use crate::transport::observer::{Observer, PathStep};
@@ -24,11 +26,6 @@ pub struct Arguments {
     /// The sample of that pixel, counted from 0.
     #[arg(long, value_name = "N")]
     sample: u32,
-}
-
-fn parse_pixel(text: &str) -> Result<UVec2, String> {
-    let sides = text.split_once(',').and_then(|(x, y)| Some((x.parse().ok()?, y.parse().ok()?)));
-    sides.map(|(x, y)| UVec2::new(x, y)).ok_or_else(|| "expected X,Y such as 480,270".to_owned())
 }
 
 pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
@@ -97,7 +94,7 @@ fn triple(value: Vec3A) -> String {
     format!("({}, {}, {})", value.x, value.y, value.z)
 }
 
-/// What the path brought to its pixel.
+/// The contributions of the path to its pixel.
 fn summary(sample: &PathSample) -> String {
     let mut text = String::new();
     let rows = [

@@ -125,13 +125,13 @@ pub fn read_snapshot(path: &Path) -> Result<Snapshot> {
     let reader = open(path)?;
     let info = info(path, reader.meta_data())?;
     let Some(header) = info.header else {
-        let reason = "this EXR was not written by Flambeau, so there is nothing to continue";
+        let reason = "this EXR was not written by Flambeau, so it cannot be resumed";
         return Err(invalid(path, "", reason));
     };
     if info.parts != 1 {
         let reason = format!(
             "it has {} parts, and a snapshot has one; another program may have added to it, so \
-             that it cannot be continued",
+             it cannot be resumed",
             info.parts
         );
         return Err(invalid(path, "", reason));

@@ -7,8 +7,9 @@ use std::sync::{Mutex, PoisonError};
 use glam::UVec2;
 use rayon::prelude::*;
 
+use super::coarse::representative;
 use super::film::{Film, Sums, TILE, Totals, add_sample, row_pixels};
-use super::schedule::{Work, representative};
+use super::schedule::Work;
 use super::thread_time::thread_seconds;
 use crate::error::{Error, Result};
 use crate::transport::{PixelSampler, Prepared, SampleNumber};
@@ -33,7 +34,7 @@ pub struct Pool {
 pub struct Failure {
     /// The pixel and the sample in question; none where the render could not begin.
     pub at: Option<(UVec2, u32)>,
-    /// What went wrong.
+    /// The reason.
     pub message: String,
 }
 
@@ -57,7 +58,7 @@ impl std::fmt::Display for Failure {
     }
 }
 
-/// What became of a piece of work.
+/// The outcome of a piece of work.
 #[derive(Debug)]
 pub struct WorkOutcome {
     /// Counts of what was done, all of it or not.
@@ -158,7 +159,7 @@ fn rows_at_once(stride: u32) -> usize {
     (stride * stride / TILE).max(1) as usize
 }
 
-/// What was done of some rows.
+/// The outcome of some rows.
 struct Done {
     totals: Totals,
     cpu_seconds: f64,
@@ -179,7 +180,7 @@ impl Done {
     }
 }
 
-/// What is common to the rows of one piece of work.
+/// The values that the rows of one piece of work share.
 struct RowContext<'a> {
     sampler: &'a dyn PixelSampler,
     prepared: Option<&'a Prepared>,

@@ -12,8 +12,9 @@
 use glam::Vec3A;
 
 use super::{
+    counts::Allocation,
     probes::{Brightness, DistancePdf},
-    strategy::{Distance, ScatterProbability, Strategy, Tracker},
+    strategy::{Strategy, Tracker},
     tracking::{
         decomposition,
         event::{Event, Flight},
@@ -30,12 +31,8 @@ use crate::{
 /// Probability of null-collision tracking where a flight is either that or guided. It bounds the
 /// weights by its inverse.
 const NULL_SHARE: f32 = 0.6;
-/// Most guided flights of a ray from the camera, on average.
-const MOST_FLIGHTS: f32 = 16.0;
 /// Guided flights that what a ray brings is spread over at least.
 const LEAST_SPREAD: f32 = 0.1;
-/// Relative variance of what an unguided flight finds from which on guided ones pay.
-const MUCH_MISSED: f32 = 1.0;
 
 /// p_select: the densities that guide along one ray, each with the same share.
 #[derive(Debug)]
@@ -83,48 +80,6 @@ pub(super) fn pdf_of_both(distance_pdf: Option<f32>, light: Option<f32>) -> f32 
 /// The place on a ray between two parameters from which points of lights are chosen.
 pub(super) fn middle(ray: &Ray, t0: f32, t1: f32) -> Vec3A {
     ray.at(if t1.is_finite() { 0.5 * (t0 + t1) } else { t0 })
-}
-
-/// How the flights of a camera ray share what both kinds can bring, scattering.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Allocation {
-    /// Guided flights on average.
-    pub(super) flights: f32,
-    /// Whether they bring all of it; else both kinds do, by MIS.
-    pub(super) alone: bool,
-}
-
-impl Allocation {
-    /// How many guided flights pay, where the guides are those of `distance_pdf`. The noise of a pixel is
-    /// about in proportion to its light, so that the picture's falls fastest for the same effort
-    /// where each gets flights in that proportion; fewer where an unguided one finds all the light
-    /// as well, as in a cloud, or where the noise is that of surfaces. But each ray gets one at least,
-    /// or its share of one, as it does from probes alone: what is rarely guided has rare bright paths.
-    pub(super) fn new(
-        strategy: &Strategy,
-        distance_pdf: Option<&DistancePdf>,
-        film: &Brightness,
-    ) -> Self {
-        let alone = strategy.advanced.distance == Distance::Probes;
-        let Some(distance_pdf) = distance_pdf else { return Self { flights: 1.0, alone } };
-        let least = if alone { 1.0 } else { film.share };
-        let relative = film.share * (distance_pdf.light() / film.scattered);
-        let wanted = relative * (distance_pdf.missed() / MUCH_MISSED).min(1.0);
-        let flights = match strategy.advanced.scatter_probability {
-            ScatterProbability::Light if wanted.is_finite() => wanted.clamp(least, MOST_FLIGHTS),
-            _ => least,
-        };
-        Self { flights, alone }
-    }
-
-    /// The factor of a scattering event of either kind, whose weight is over `pdf_null`.
-    fn weight(&self, pdf_null: f32, pdf_guided: f32, is_null: bool) -> f32 {
-        match self.alone {
-            false => mis::mixture([1.0, self.flights], [pdf_null, pdf_guided]),
-            true if is_null || pdf_guided <= 0.0 => 0.0,
-            true => pdf_null / (pdf_guided * self.flights),
-        }
-    }
 }
 
 /// The flight along a ray through `medium` without a guide, by the tracker that is chosen.
@@ -213,7 +168,7 @@ impl<'g> GuidedDistances<'g> {
     }
 
     /// Where the guided flights end.
-    pub(super) fn distances(&self) -> impl Iterator<Item = f32> + use<'g> {
+    pub(super) fn iter(&self) -> impl Iterator<Item = f32> + use<'g> {
         let (guide, count, offset) = (self.guide, self.count, self.offset);
         (0..count).map(move |index| {
             let u = (index as f32 + offset) / count as f32;
@@ -259,7 +214,9 @@ mod tests {
     use glam::UVec2;
 
     use super::*;
-    use crate::transport::{Scene, probes::Probes, strategy::Advanced};
+    use crate::transport::Scene;
+    use crate::transport::probes::Probes;
+    use crate::transport::strategy::{Advanced, ScatterProbability};
 
     const SMOKE: &str = r#"
         [[volume]]
@@ -335,7 +292,7 @@ mod tests {
         let fan = GuidedDistances::new(strategy, guide, film, &mut rng);
         let mut again = rng.clone();
         let medium = || medium.clone();
-        let (flight, plain) = match fan.distances().next() {
+        let (flight, plain) = match fan.iter().next() {
             Some(t) => (
                 fan.guided(medium(), strategy, t, Rgb::ONE, &mut rng),
                 fill(medium(), strategy, Rgb::ONE, t, &mut again),

@@ -4,9 +4,10 @@ use std::sync::Arc;
 
 use glam::{UVec2, Vec2};
 
+use super::context::PathContext;
 use super::emission::EmissionEstimator;
 use super::observer::{Nobody, Observer};
-use super::path::{self, PathContext};
+use super::path;
 use super::prepare::{self, guided_flights};
 use super::probes::{Brightness, Probes};
 use super::sample::{PathSample, PixelSampler, Prepared, SampleNumber};

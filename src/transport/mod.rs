@@ -1,6 +1,8 @@
 //! How light moves through volumes: the strategies and the paths they sample. Read `path` first.
 
 pub mod camera;
+pub mod context;
+mod counts;
 pub mod direct;
 mod distance;
 pub mod emission;

@@ -17,6 +17,7 @@ mod distance_pdf;
 mod octree;
 mod place;
 mod probe;
+#[allow(clippy::module_inception, reason = "the folder is named after its main type")]
 mod probes;
 mod scores;
 pub(super) mod stages;

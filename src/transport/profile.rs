@@ -4,8 +4,8 @@
 use glam::UVec2;
 
 use super::{
-    direct,
-    distance::{self, Allocation},
+    counts::Allocation,
+    direct, distance,
     frame::PreparedFrame,
     probes::{DistancePdf, Probes},
     scene::Scene,

@@ -2,8 +2,11 @@
 
 use glam::UVec2;
 
+use super::observer::{Observer, PathStep};
+use super::tracking::MOST_COLLISIONS;
+use super::tracking::event::{Event, Flight};
 use crate::error::{Progress, Result, report};
-use crate::math::Rgb;
+use crate::math::{Rgb, mean};
 
 /// The version of the paths, raised whenever (scene, strategy, seed, pixel, sample) leads to another
 /// path than before. Snapshots carry it: samples of two versions come from two estimators or two
@@ -35,6 +38,101 @@ impl PathSample {
     /// All light of the path.
     pub fn beauty(&self) -> Rgb {
         self.emission + self.background + self.direct + self.indirect
+    }
+}
+
+/// The contributions of one path, as they are gathered.
+#[derive(Debug, Default)]
+pub(super) struct Contributions {
+    sample: PathSample,
+}
+
+impl Contributions {
+    /// Adds volume emission that is found on a ray after so many scattering events and reflections.
+    pub(super) fn add_emission(
+        &mut self,
+        scatters: u32,
+        contribution: Rgb,
+        observer: &mut impl Observer,
+    ) {
+        match scatters {
+            0 => self.sample.emission += contribution,
+            _ => self.add_scattered(scatters, contribution),
+        }
+        observer.step(PathStep::Emission { contribution });
+    }
+
+    /// Adds radiance of the surface or environment at the end of a ray.
+    pub(super) fn add_end(
+        &mut self,
+        scatters: u32,
+        contribution: Rgb,
+        observer: &mut impl Observer,
+    ) {
+        match scatters {
+            0 => self.sample.background += contribution,
+            _ => self.add_scattered(scatters, contribution),
+        }
+        observer.step(PathStep::End { contribution });
+    }
+
+    /// Adds what a light sample brings to vertex number `scatters`.
+    pub(super) fn add_light(
+        &mut self,
+        scatters: u32,
+        contribution: Rgb,
+        observer: &mut impl Observer,
+    ) {
+        self.add_scattered(scatters, contribution);
+        observer.step(PathStep::Light { contribution });
+    }
+
+    /// Adds light that comes by `scatters` events, at least one.
+    fn add_scattered(&mut self, scatters: u32, contribution: Rgb) {
+        match scatters {
+            1 => self.sample.direct += contribution,
+            _ => self.sample.indirect += contribution,
+        }
+    }
+
+    /// Adds a throughput that is no number, so that the film counts the sample.
+    pub(super) fn spoil(&mut self, throughput: Rgb) {
+        self.sample.indirect += throughput;
+    }
+
+    /// Counts the collisions of a walk, and notes a walk that was cut.
+    pub(super) fn count(&mut self, collisions: u32) {
+        self.sample.tracking_steps = self.sample.tracking_steps.saturating_add(collisions);
+        self.sample.guard_hit |= collisions >= MOST_COLLISIONS;
+    }
+
+    /// Notes that the path is cut.
+    pub(super) fn cut(&mut self) {
+        self.sample.guard_hit = true;
+    }
+
+    /// Whether a walk of the path was cut, or the path itself.
+    pub(super) fn is_cut(&self) -> bool {
+        self.sample.guard_hit
+    }
+
+    /// Notes coverage and depth of the camera ray, which a surface ends at `d`, if that is finite.
+    /// `transmittance` is the emission walk's, if it had one.
+    pub(super) fn note_first_event(&mut self, flight: &Flight, d: f32, transmittance: Option<Rgb>) {
+        let is_open = d == f32::INFINITY;
+        let (opacity, depth) = match flight.event {
+            Event::Absorbed { real: false, .. } => (1.0, None),
+            Event::Absorbed { t, .. } | Event::Scattered { t, .. } => (1.0, Some(t)),
+            Event::Reached if is_open => (1.0 - mean(flight.weight), None),
+            Event::Reached => (1.0, Some(d)),
+        };
+        let smooth = transmittance.filter(|_| is_open).map(|t| 1.0 - mean(t));
+        (self.sample.alpha, self.sample.depth) = (smooth.unwrap_or(opacity), depth);
+    }
+
+    /// The finished sample.
+    pub(super) fn finish(self) -> PathSample {
+        self.sample
     }
 }
 

@@ -10,9 +10,9 @@ use std::f32::consts::TAU;
 use glam::{DVec3, IVec3, Vec3A};
 use rayon::prelude::*;
 
-use super::Region;
 use super::cells::CellGrid;
 use super::majorant::MajorantGrid;
+use super::region::Region;
 use crate::{
     error::{Progress, Result, report},
     math::{Aabb, Ray},
@@ -61,7 +61,7 @@ struct Cells {
 }
 
 impl Energy {
-    /// Of a region that emits `emission`, lum ε, throughout; `None` if it emits nothing or has no
+    /// The distribution over a region that emits `emission`, lum ε, throughout; `None` if it emits nothing or has no
     /// finite volume.
     pub(super) fn uniform(region: Region, emission: f32) -> Option<Self> {
         let volume = match region {
@@ -79,7 +79,7 @@ impl Energy {
         })
     }
 
-    /// Of a volume whose `emission`, lum ε, is bounded by `majorants`; `None` if it emits nothing.
+    /// The distribution over a volume whose `emission`, lum ε, is bounded by `majorants`; `None` if it emits nothing.
     ///
     /// A cell's density is the mean of its emission and a small share of its upper bound, zero
     /// only where the upper bound is.

@@ -1,4 +1,4 @@
-//! The ray of a pixel, looked into: what lies along it and how distances are drawn there.
+//! The ray inspector: the medium along the ray of a pixel, and the pdfs of distances there.
 
 use std::sync::Arc;
 
@@ -44,21 +44,21 @@ pub const DENSITIES: [RayCurve; 3] = [
     RayCurve {
         name: "Extinction",
         unit: "1/length",
-        help: "μ_t: how much the medium takes from a ray per length, by absorbing and scattering.",
+        help: "μ_t: absorption plus scattering coefficient of the medium.",
         color: color::CURVE,
         value: |row| row.mu_t,
     },
     RayCurve {
-        name: "Drawn by chance",
+        name: "Null-collision pdf",
         unit: "1/length",
-        help: "p_null = μ_t T: the density with which null-collision tracking scatters here.",
+        help: "p_null = μ_t T: the pdf of scattering here by null-collision sampling.",
         color: color::CURVE_CHANCE,
         value: |row| row.p_null,
     },
     RayCurve {
-        name: "Drawn by probes",
+        name: "Probe pdf",
         unit: "1/length",
-        help: "p_select: the density with which probes and equal angles scatter here.",
+        help: "p_select: the pdf of scattering here by probes and equiangular sampling.",
         color: color::CURVE_PROBES,
         value: |row| row.p_select,
     },
@@ -69,28 +69,29 @@ pub const SHARES: [RayCurve; 4] = [
     RayCurve {
         name: "Transmittance",
         unit: "",
-        help: "T: the share of light that comes through from here to the camera.",
+        help: "T: the fraction of light transmitted from here to the camera.",
         color: color::CURVE,
         value: |row| row.transmittance,
     },
     RayCurve {
         name: "Emission",
         unit: "radiance/length",
-        help: "ε: the radiance that the medium emits per length. Its curve is a share of its peak.",
+        help: "ε: the radiance that the medium emits per unit length. The curve is relative to its \
+               peak.",
         color: color::CURVE_GLOW,
         value: |row| row.emission,
     },
     RayCurve {
-        name: "Weight of chance",
+        name: "Null-collision weight",
         unit: "",
-        help: "The MIS weight of scattering that null-collision tracking finds here.",
+        help: "The MIS weight of scattering here by null-collision sampling.",
         color: color::CURVE_CHANCE,
         value: |row| row.weight_null,
     },
     RayCurve {
-        name: "Weight of probes",
+        name: "Probe weight",
         unit: "",
-        help: "The MIS weight of scattering that probes and equal angles find here.",
+        help: "The MIS weight of scattering here by probes and equiangular sampling.",
         color: color::CURVE_PROBES,
         value: |row| row.weight_guided,
     },
@@ -204,18 +205,18 @@ impl Inspector {
 
     fn contents(&mut self, ui: &mut Ui) {
         let Some((source, Some(Found { profile, .. }))) = self.profile.done() else {
-            ui.label("Looking …");
+            ui.label("Measuring the ray…");
             return;
         };
         let UVec2 { x, y } = source.pixel;
         let Some(profile) = profile else {
-            ui.label(format!("Pixel {x}, {y}: this ray meets no medium."));
+            ui.label(format!("Pixel {x}, {y}: no medium along this ray."));
             return;
         };
         let depth = significant(f64::from(profile.optical_depth));
         let guided = match profile {
             Profile { guided: false, .. } => ", no probes",
-            Profile { flights: 0.0, .. } => ", probes not asked: they don't pay in this picture",
+            Profile { flights: 0.0, .. } => ", probes switched off automatically",
             _ => "",
         };
         ui.label(format!("Pixel {x}, {y}: optical depth {depth}{guided}"));

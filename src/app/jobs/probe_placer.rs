@@ -10,6 +10,8 @@ use super::scene_loader::{BuiltScene, RenderStart};
 use crate::error::{Error, Progress, Result};
 use crate::render::pool::{Pool, Priority};
 use crate::render::{Request, Resume, Session};
+use crate::scene::Settings;
+use crate::scene::settings::CameraSettings;
 use crate::transport::probes::Probes;
 use crate::transport::{Frame, PixelSampler, Scene, prepare};
 
@@ -195,15 +197,20 @@ fn same(a: &BuiltScene, b: &BuiltScene) -> bool {
         && same_places(a, b)
 }
 
-/// Whether they would with the same strategy.
+/// Whether two scenes would have the same probes with the same strategy.
 fn same_places(a: &BuiltScene, b: &BuiltScene) -> bool {
-    let same_camera = || a.settings.camera.position == b.settings.camera.position;
-    a.settings.environment == b.settings.environment
-        && a.settings.path == b.settings.path
-        && a.settings.light == b.settings.light
-        && a.settings.surface == b.settings.surface
+    // All keys are named, so that a new one cannot leave stale probes. The film has no part in the
+    // probes, the volumes are compared as they were built, and the strategy by its recipe.
+    let Settings { camera, film: _, path, environment, volume: _, light, surface, strategy: _ } =
+        &a.settings;
+    // Where the camera looks does not matter.
+    let CameraSettings { position, target: _, up: _, fov_x: _ } = camera;
+    *environment == b.settings.environment
+        && *path == b.settings.path
+        && *light == b.settings.light
+        && *surface == b.settings.surface
         && a.scene.world.has_volumes_of(&b.scene.world)
-        && (!Probes::heed_camera(&b.scene) || same_camera())
+        && (!Probes::heed_camera(&b.scene) || *position == b.settings.camera.position)
 }
 
 #[cfg(test)]

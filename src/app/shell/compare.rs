@@ -1,4 +1,5 @@
-//! What the window shows of a comparison over the pictures: the divider and the names of the sides.
+//! Where the window meets a comparison: the commands that begin, change and end it, and the divider
+//! and the names of the sides over the pictures.
 
 use egui::{Align2, CursorIcon, FontId, Rect, Sense, Stroke, TextStyle, Ui, pos2, vec2};
 
@@ -16,6 +17,42 @@ impl App {
     pub(super) fn active_side(&self) -> Option<Side> {
         let versus = self.versus.map(Side::other);
         versus.or(self.editor.document.compared.map(|compared| compared.active))
+    }
+
+    /// Compares two strategies, or ends a comparison, be it of strategies or with a snapshot.
+    pub(super) fn compare_or_end(&mut self) {
+        if self.versus.is_some() {
+            self.snapshots.strip.show(None);
+            return;
+        }
+        let document = &mut self.editor.document;
+        match document.compared {
+            None => document.compare(),
+            Some(_) => document.compared = None,
+        }
+        self.editor.name_edit("comparison");
+    }
+
+    /// Edits the other side from now on.
+    pub(super) fn switch_side(&mut self) {
+        self.editor.document.switch_side();
+        self.editor.name_edit("edited side");
+    }
+
+    /// Exchanges A and B.
+    pub(super) fn swap_sides(&mut self) {
+        if let Some(side) = self.versus {
+            self.versus = Some(side.other());
+            return;
+        }
+        self.editor.document.swap_sides();
+        self.editor.name_edit("swap of A and B");
+    }
+
+    /// Gives the other side the strategy of the edited one.
+    pub(super) fn copy_side(&mut self) {
+        self.editor.document.copy_to_other_side();
+        self.editor.name_edit("copy to the other side");
     }
 
     /// Draws the divider and the names of the sides over the pictures in `rect`.

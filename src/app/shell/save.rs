@@ -97,7 +97,7 @@ impl Saver {
             Err(mpsc::TryRecvError::Empty) => true,
             Err(mpsc::TryRecvError::Disconnected) => {
                 let name = save.path.display().to_string();
-                let reason = "the save broke off; try again, or somewhere else";
+                let reason = "saving was interrupted; try again, or save elsewhere";
                 ended.push((save.path.clone(), Err(Error::invalid(name, "", reason))));
                 false
             }
@@ -144,7 +144,7 @@ fn write(path: &Path, content: Content) -> Result<()> {
 /// The film, once the session has copied it; `path` is what it is wanted for.
 pub fn receive(path: &Path, film: &mpsc::Receiver<Film>) -> Result<Film> {
     film.recv().map_err(|_| {
-        let reason = "there is no picture to save, or too little memory for a copy of it";
+        let reason = "there is no picture to save, or not enough memory to copy it";
         Error::invalid(path.display().to_string(), "", reason)
     })
 }

@@ -79,7 +79,7 @@ impl App {
             tables.push(table("", names, &columns));
         }
         if let Some(part) = self.second_side.part() {
-            tables.push(table("rectangle", names, &of_part(part, errors)));
+            tables.push(table("region", names, &of_part(part, errors)));
         }
         tables
     }

@@ -2,9 +2,11 @@
 
 use glam::UVec2;
 
+use super::tally::Tally;
 use super::*;
 use crate::render::FilmStats;
 use crate::render::synthetic::{Fireflies, GrayLevel, sampled};
+use crate::render::{Area, Film};
 use crate::transport::SampleNumber;
 
 const SIZE: UVec2 = UVec2::new(40, 30);

@@ -12,7 +12,7 @@ use glam::UVec2;
 
 use super::cost::Cost;
 use super::pilot_pixel::{PilotPixel, half_square};
-use crate::transport::path::PathContext;
+use crate::transport::context::PathContext;
 use crate::transport::scene::Scene;
 use crate::{
     error::{Progress, Result, report},

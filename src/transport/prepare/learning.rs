@@ -12,9 +12,9 @@ use glam::{UVec2, Vec3A};
 use rayon::prelude::*;
 
 use super::cost::Cost;
+use crate::transport::context::PathContext;
 use crate::transport::emission::EmissionEstimator;
 use crate::transport::path;
-use crate::transport::path::PathContext;
 use crate::transport::probes::stages::{CAUSTICS_FOUND, SEED};
 use crate::transport::probes::{Brightness, Indirect, Probes};
 use crate::transport::scene::Scene;

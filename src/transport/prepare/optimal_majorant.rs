@@ -10,10 +10,10 @@ use glam::UVec2;
 use super::pilot_pixel::{PilotPixel, half_square};
 use crate::error::{Progress, Result, report};
 use crate::math::luminance;
+use crate::transport::context::PathContext;
 use crate::transport::emission::EmissionEstimator;
 use crate::transport::emission::ray::RayKind;
 use crate::transport::observer::Nobody;
-use crate::transport::path::PathContext;
 use crate::transport::probes::Brightness;
 use crate::transport::scene::Scene;
 

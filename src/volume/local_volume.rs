@@ -1,4 +1,4 @@
-//! One volume in its own space: where it is, what it holds and how large that gets.
+//! A volume in its own space: its region, its medium and the bounds of that.
 
 use glam::{IVec3, Vec3A};
 
@@ -8,56 +8,12 @@ use super::{
     field::{RgbField, ScalarField},
     majorant::{Majorant, MajorantGrid},
     medium::Coefficients,
+    region::Region,
 };
 use crate::error::{Progress, Result, report};
-use crate::math::{Aabb, Ray, Rgb, luminance};
+use crate::math::{Aabb, Rgb, luminance};
 
-/// Where a volume is, in its own space. Its borders are sharp.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Region {
-    /// A box.
-    Box(Aabb),
-    /// A sphere about the origin.
-    Sphere {
-        /// Its radius.
-        radius: f32,
-    },
-    /// All of space.
-    Everywhere,
-}
-
-impl Region {
-    /// The smallest box around it; infinite for [`Region::Everywhere`].
-    pub fn bounds(&self) -> Aabb {
-        match self {
-            Self::Box(bounds) => *bounds,
-            Self::Sphere { radius } => Aabb::centered(Vec3A::splat(*radius)),
-            Self::Everywhere => Aabb::centered(Vec3A::INFINITY),
-        }
-    }
-
-    /// The part of (0, t_max) that `ray` spends inside; its direction need not be a unit vector.
-    pub fn intersect(&self, ray: &Ray, t_max: f32) -> Option<(f32, f32)> {
-        match self {
-            Self::Box(bounds) => bounds.intersect(ray, 0.0, t_max),
-            Self::Sphere { radius } => {
-                let a = ray.direction.length_squared();
-                let middle = -ray.origin.dot(ray.direction) / a;
-                let nearest = ray.at(middle);
-                let half_squared = (radius * radius - nearest.length_squared()) / a;
-                if half_squared <= 0.0 || half_squared.is_nan() {
-                    return None;
-                }
-                let half = half_squared.sqrt();
-                let (t0, t1) = ((middle - half).max(0.0), (middle + half).min(t_max));
-                (t0 < t1).then_some((t0, t1))
-            }
-            Self::Everywhere => (t_max > 0.0).then_some((0.0, t_max)),
-        }
-    }
-}
-
-/// What a volume is made of. Coefficients are per unit of *world* length, whatever its placement.
+/// The properties of a medium. Coefficients are per unit of *world* length, whatever its placement.
 #[derive(Clone, Debug)]
 pub struct MediumProperties {
     /// The density field; μ_t = `density_scale` · value.
@@ -68,7 +24,7 @@ pub struct MediumProperties {
     pub albedo: RgbField,
     /// Mean cosine of its Henyey–Greenstein phase function.
     pub g: f32,
-    /// What it radiates.
+    /// The emission.
     pub emission: Emission,
 }
 
@@ -142,7 +98,7 @@ impl MediumProperties {
     }
 }
 
-/// One volume in its own space, ready to be placed any number of times.
+/// A volume in its own space, ready to be placed any number of times.
 #[derive(Clone, Debug)]
 pub struct Volume {
     region: Region,
@@ -209,17 +165,17 @@ impl Volume {
         })
     }
 
-    /// Where it is.
+    /// The region that it takes.
     pub fn region(&self) -> &Region {
         &self.region
     }
 
-    /// What it is made of.
+    /// Its medium.
     pub fn properties(&self) -> &MediumProperties {
         &self.properties
     }
 
-    /// How large its coefficients get.
+    /// The bounds of its coefficients.
     pub fn bounds(&self) -> &CoefficientBounds {
         &self.bounds
     }
