@@ -1,40 +1,33 @@
-//! What is shown to understand a render: cells drawn over the picture, and maps in its place. None
+//! Diagnostics of a render: cells over the picture, maps in its place, and the ray of a pixel. None
 //! of it belongs to the scene, the strategy or the record of edits.
+//!
+//! - `cells`, `overlay`: the strongest cells of the volumes, gathered and drawn.
+//! - `ray`, `curves`, `plots`: the ray of a pixel, and its curves.
+//! - `legend`: the meaning of colors; `panel`: what is to be shown.
 
 mod cells;
+mod curves;
 mod legend;
 mod overlay;
 pub mod panel;
 mod plots;
 mod ray;
 
-use egui::{Context, Rect, Ui};
-use glam::UVec2;
+use egui::{Context, Ui};
 
-pub use super::picture::ramp_color::{STOPS, Scale, color as ramp_color, stops};
-
+use super::jobs::background::BackgroundPool;
 use super::jobs::live_render::LiveRender;
-use super::picture::display::Look;
-use super::picture::viewport::View;
+use super::picture::look::Look;
+use super::picture::view::View;
+use crate::image::ramp::Scale;
 use crate::image::tone::Tone;
 use crate::render::{Layer, Picture};
 use crate::scene::{self, Settings};
-use cells::{CellSource, Gathering};
+use cells::{CellSource, CellValue, Gathering};
 pub use legend::{Legend, show as show_legends};
 use ray::Inspector;
 
-/// What the cells drawn over the picture are colored by.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum CellValue {
-    /// The local majorant: the largest extinction in the cell, 1/length.
-    Majorant,
-    /// The power the cell emits, radiance × length².
-    Energy,
-    /// What each probe thinks is scattered towards the camera, radiance/length.
-    Probes,
-}
-
-/// What the user asked to see.
+/// The diagnostics that the user asked for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Wanted {
     /// The cells over the picture.
@@ -45,16 +38,21 @@ pub struct Wanted {
     pub ray: bool,
 }
 
-/// What the user asked to see, and what is there to show it.
-#[derive(Default)]
+/// The diagnostics asked for, and the data to show them.
 pub struct Diagnostics {
-    /// What the user asked to see.
+    /// The diagnostics that the user asked for.
     pub wanted: Wanted,
     gathering: Gathering,
     inspector: Inspector,
 }
 
 impl Diagnostics {
+    /// Nothing is wanted yet; `pool` will gather cells and look into rays.
+    pub fn new(pool: &BackgroundPool) -> Self {
+        let (gathering, inspector) = (Gathering::new(pool), Inspector::new(pool));
+        Self { wanted: Wanted::default(), gathering, inspector }
+    }
+
     /// Brings session and cells in line with what is wanted. Called once a frame.
     pub fn update(&mut self, ctx: &Context, engine: &mut LiveRender) {
         engine.set_layer(self.wanted.layer);
@@ -83,7 +81,7 @@ impl Diagnostics {
         Some(Look::Numbers(Scale::rounded(range)))
     }
 
-    /// What the colors of `look` mean, where they are the numbers of the layer.
+    /// The legend of `look`, where its colors are the numbers of the layer.
     pub fn legend(&self, look: Option<Look>) -> Option<Legend> {
         match look? {
             Look::Numbers(scale) => self.wanted.layer.map(|layer| Legend::of_layer(layer, scale)),
@@ -106,10 +104,4 @@ impl Diagnostics {
             self.wanted.ray = self.inspector.show(ui, &view);
         }
     }
-}
-
-/// The part of the window that the picture covers.
-fn picture_rect(view: &View, size: UVec2) -> Rect {
-    let corners = [glam::Vec2::ZERO, size.as_vec2()].map(|corner| view.window_at(corner));
-    Rect::from_min_max(corners[0], corners[1]).intersect(view.rect)
 }

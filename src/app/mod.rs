@@ -1,20 +1,16 @@
 //! The window: panels around a picture that refines itself.
 //!
-//! - [`window`](self): [`App`] owns the state and runs a frame; [`run`] opens a window for it.
-//! - `state`, `history`: what is edited, and undo; `commands`: everything that can be asked for.
-//! - `engine`, `loader`, `probe_placer`: from edits to pictures, without ever blocking the window.
-//! - `viewport`, `navigation`, `zoom`, `display`, `readout`: the picture and the hand on it.
-//! - `gizmo`: handles over the picture that move a light; `stops`: those of a color ramp.
-//! - `second_side`: two strategies on one scene, or a snapshot and the live picture, side by side.
-//! - `region`, `reference`: a part of the picture and a reference that figures are told of;
-//!   `export`: all that in a file.
-//! - `sweep`: every strategy tried on the shot, and ranked.
-//! - `diagnostics`: cells over the picture and maps in its place, to understand a render.
-//! - `panels`, `widgets`, `notices`, `theme`: what is around it.
-//! - `files`, `saver`, `reopen`: choosing, writing and going on from files; `data`, `preferences`: what
-//!   outlasts a run.
-//! - `snapshots`: pictures kept in a strip, on the disk between runs.
-//! - `frame_stats`: what the window costs (`FLAMBEAU_FRAME_STATS=FILE`).
+//! Each room uses those above it in this list only:
+//!
+//! - `command`: everything that can be asked for; `document`: what is edited, and undo.
+//! - `ui`: theme, widgets, sections, notices.
+//! - `jobs`: from edits to pictures, without ever blocking the window; `picture`: the picture and the
+//!   hand on it.
+//! - `compare`: two strategies side by side, errors against a reference; `snapshots`: pictures kept in
+//!   a strip; `sweep`: every strategy tried on the shot, and ranked.
+//! - `diagnostics`: cells over the picture and maps in its place.
+//! - `panels`: the column of settings.
+//! - `shell`: the window itself.
 
 mod command;
 mod compare;
@@ -29,17 +25,18 @@ mod sweep;
 mod ui;
 
 pub use command::Command;
-pub use compare::reference::Measure;
+pub use compare::measure::Measure;
 pub use compare::second_side::CompareLayout;
-pub use diagnostics::{Scale, ramp_color};
 pub use document::{Compared, Document, Editor, Side};
 pub use jobs::dialogs::Dialogs;
 pub use jobs::live_render::LiveRender;
+pub use picture::ramp_color::color as ramp_color;
 pub use shell::{App, Options};
 pub use sweep::{Results, Sweep};
 pub use ui::notices::{Level, Notice, Notices};
 
 use crate::error::{Error, Result};
+pub use crate::image::ramp::Scale;
 
 /// The window as eframe runs it.
 struct Window {

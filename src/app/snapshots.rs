@@ -2,7 +2,8 @@
 //! between runs.
 //!
 //! - `strip`: which there are and which is shown; `record`, `thumbnail`: what is shown of each.
-//! - `store`: the folder; `clerk`: the threads that read and write it.
+//! - `store`: the folder; `disk`: the workers that read and write it.
+//! - `panel`: the strip on the screen.
 
 mod disk;
 pub mod panel;
@@ -32,12 +33,12 @@ const LIMIT: u64 = 2 << 30;
 
 /// The strip and what stands behind it.
 pub struct Snapshots {
-    /// What there is and what is shown.
+    /// The snapshots and which one is shown.
     pub strip: Strip,
     /// Whether the picture is to be kept as soon as it is that of the present scene.
     pub wants_keep: bool,
     store: Option<Store>,
-    clerk: DiskWorkers,
+    workers: DiskWorkers,
     /// How many are being written.
     keeping: usize,
     /// Whether a picture is being read.
@@ -52,26 +53,26 @@ impl Snapshots {
     pub fn new(ctx: &Context, data: Option<PathBuf>) -> Result<Self> {
         let store = data.map(|data| Store::new(&data));
         let wake = ctx.clone();
-        let clerk = DiskWorkers::new(store.clone(), LIMIT, move || wake.request_repaint())?;
-        clerk.ask(DiskJob::List);
+        let workers = DiskWorkers::new(store.clone(), LIMIT, move || wake.request_repaint())?;
+        workers.ask(DiskJob::List);
         let strip = Strip::default();
-        Ok(Self { strip, wants_keep: false, store, clerk, keeping: 0, reading: false })
+        Ok(Self { strip, wants_keep: false, store, workers, keeping: 0, reading: false })
     }
 
     /// Takes in what the disk has to say and asks for what is needed next. Called once a frame;
     /// `typing` is whether a name or note may still be being edited.
     pub fn update(&mut self, typing: bool, notices: &mut Notices) {
-        while let Some(report) = self.clerk.poll() {
+        while let Some(report) = self.workers.poll() {
             self.take_in(report, notices);
         }
         if !typing {
-            self.strip.edited().into_iter().for_each(|job| self.clerk.ask(job));
+            self.strip.edited().into_iter().for_each(|job| self.workers.ask(job));
         }
         if !self.reading
             && let Some(job) = self.strip.wanted()
         {
             self.reading = true;
-            self.clerk.ask(job);
+            self.workers.ask(job);
         }
     }
 
@@ -122,7 +123,7 @@ impl Snapshots {
     /// Keeps a picture.
     pub fn keep(&mut self, keep: Keep) {
         self.keeping += 1;
-        self.clerk.ask(DiskJob::Keep(Box::new(keep)));
+        self.workers.ask(DiskJob::Keep(Box::new(keep)));
     }
 
     /// How many are being written.
@@ -133,14 +134,14 @@ impl Snapshots {
     /// Deletes the snapshot shown, until that is undone.
     pub fn delete(&mut self) {
         if let Some(job) = self.strip.delete() {
-            self.clerk.ask(job);
+            self.workers.ask(job);
         }
     }
 
     /// Brings the snapshot deleted last back.
     pub fn undo_delete(&mut self) {
         if let Some(job) = self.strip.undo_delete() {
-            self.clerk.ask(job);
+            self.workers.ask(job);
         }
     }
 
@@ -154,7 +155,7 @@ impl Snapshots {
         Some(self.store.as_ref()?.picture(&item.entry.id))
     }
 
-    /// What the user calls the snapshot in this file, if it is one of the strip.
+    /// The user's name of the snapshot in this file, if it is one of the strip.
     pub fn name_of(&self, file: &Path) -> Option<&str> {
         let id = self.store.as_ref()?.id_of(file)?;
         Some(&self.strip.find(&id)?.record.name)
@@ -163,8 +164,8 @@ impl Snapshots {
     /// Writes down what was edited, forgets what was deleted and waits for what is being written.
     pub fn close(&mut self) {
         let edited = self.strip.edited();
-        edited.into_iter().chain(self.strip.forget_deleted()).for_each(|job| self.clerk.ask(job));
-        self.clerk.finish();
+        edited.into_iter().chain(self.strip.forget_deleted()).for_each(|job| self.workers.ask(job));
+        self.workers.finish();
     }
 }
 

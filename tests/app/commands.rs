@@ -211,7 +211,7 @@ impl Window {
         if self.app().engine().paused() {
             self.press(Modifiers::NONE, Key::Space);
         }
-        if self.app().reference().held().is_some() {
+        if self.app().reference().loaded().is_some() {
             self.press(PALETTE, Key::K);
         }
         while self.app().editor().undo_name().is_some() {
@@ -258,7 +258,7 @@ impl Window {
             }
             MeantFor::Referenced => {
                 self.press(Modifiers::COMMAND, Key::K);
-                self.until("there is a reference", |app| app.reference().held().is_some());
+                self.until("there is a reference", |app| app.reference().loaded().is_some());
             }
         }
     }

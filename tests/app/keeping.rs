@@ -164,7 +164,7 @@ fn display_layout_and_files_are_there_again_after_a_restart() {
     assert!(scale > 1.0 && window.harness.ctx.zoom_factor() == scale);
     let tone = window.document().tone;
     assert_eq!((tone.curve, tone.exposure), (ToneCurve::Agx, 0.5));
-    assert!(window.document().settings.strategy.nee, "strategies are never remembered");
+    assert!(window.document().settings.strategy.nee, "strategies are no preferences");
     assert!(window.harness.query_by_role_and_label(Role::Button, "Full").is_none(), "still folded");
     window.press(Modifiers::NONE, Key::N);
     assert!(window.has_lights_open() && !window.has_camera_open());
@@ -195,7 +195,7 @@ fn a_reset_brings_window_and_display_back_and_nothing_else() {
     assert_eq!(window.document().tone.exposure, 0.5, "it can be taken back");
     let scene = window.folder.path().join("scene.toml");
     let window = window.restart(&scene);
-    assert!(!window.has_lights_open() && window.has_camera_open(), "nothing of it is remembered");
+    assert!(!window.has_lights_open() && window.has_camera_open(), "nothing of it is kept");
 }
 
 #[test]

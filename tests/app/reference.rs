@@ -94,10 +94,10 @@ fn a_rectangle_is_drawn_moved_by_numbers_and_taken_away() {
     assert_eq!(window.area(), Some(area(8, 9, 13, 7)), "from any corner, whole pixels");
     assert_eq!(window.document(), &opened, "the camera stays, and nothing is to be undone");
     window.until("its noise is known", |app| {
-        app.second_side().part().is_some_and(|part| part.sides[0].noise.is_some())
+        app.second_side().region_figures().is_some_and(|part| part.sides[0].noise.is_some())
     });
     let whole = window.picture().stats.noise.unwrap();
-    let part = window.app().second_side().part().unwrap();
+    let part = window.app().second_side().region_figures().unwrap();
     assert_eq!((part.area, part.sides.len()), (area(8, 9, 13, 7), 1));
     assert!(part.sides[0].noise.unwrap() < 0.9 * whole, "the ball is bright there");
     assert!(window.has("noise ") && window.has(" ± "), "the row says so");
@@ -129,13 +129,13 @@ fn both_sides_are_compared_in_the_rectangle_too() {
     window.draw_rectangle([10.0, 6.0], [21.0, 17.0]);
     let area = window.area().unwrap();
     window.until("the rectangle is compared", |app| {
-        let part = app.second_side().part();
+        let part = app.second_side().region_figures();
         part.is_some_and(|part| part.area == area && part.comparison.is_some())
     });
     let app = window.app();
     let [a, b] = app.second_side().pictures(app.engine()).unwrap();
     let expected = Comparison::of_pictures([&a, &b], Some(area));
-    let part = app.second_side().part().unwrap();
+    let part = app.second_side().region_figures().unwrap();
     assert_eq!(part.comparison.as_ref(), Some(&expected));
     assert!(window.has(&expected.sentence()), "{}", expected.sentence());
 
@@ -210,7 +210,7 @@ fn references_that_do_not_fit_are_told_with_the_mend() {
     window.load_reference(&broken);
     window.until_it_says("The reference could not be used.");
     assert!(window.has("broken.npy") && window.has(".exr or an .npy"));
-    assert!(window.app().reference().held().is_none());
+    assert!(window.app().reference().loaded().is_none());
 
     let wide = window.gray("wide.npy", [40, 24], 0.25);
     window.load_reference(&wide);
@@ -229,7 +229,7 @@ fn dropped_pictures_are_opened_or_measured_against_as_one_chooses() {
     let Some(mut window) = open() else { return };
     let exr = window.save(Modifiers::COMMAND, "kept.exr");
     window.drop_file(exr.clone());
-    assert!(window.has("kept.exr") && window.app().reference().held().is_none());
+    assert!(window.has("kept.exr") && window.app().reference().loaded().is_none());
     window.click(Role::Button, "Use as reference");
     window.until_measured();
     assert_eq!(window.app().reference().errors().unwrap()[0].rel_mse.mean, 0.0);
@@ -243,11 +243,11 @@ fn dropped_pictures_are_opened_or_measured_against_as_one_chooses() {
     std::fs::write(&other, BALL.replace("\"ball\"", "\"other\"")).unwrap();
     window.drop_file(other);
     window.click(Role::Button, "Open without saving");
-    window.until("the other scene is open", |app| app.reference().held().is_none());
+    window.until("the other scene is open", |app| app.reference().loaded().is_none());
     let gray = window.gray("gray.npy", [64, 48], 0.25);
     window.drop_file(gray);
-    window.until("an array can only be a reference", |app| app.reference().held().is_some());
-    let is_first = |app: &App| app.reference().held().is_some_and(|held| held.name == "kept.exr");
+    window.until("an array can only be a reference", |app| app.reference().loaded().is_some());
+    let is_first = |app: &App| app.reference().loaded().is_some_and(|held| held.name == "kept.exr");
     window.drop_file(scene.clone());
     window.until("the first reference is there again", is_first);
     let mut window = window.restart(&scene);

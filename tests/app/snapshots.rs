@@ -215,10 +215,10 @@ fn a_snapshot_of_the_strip_is_gone_on_from() {
     );
     window.settle();
     assert!(!window.has("Snapshot: "));
-    let remembered = window.folder.path().join("data").join("window.json");
-    let remembered: serde_json::Value =
-        serde_json::from_slice(&std::fs::read(remembered).unwrap()).unwrap();
-    let recent = remembered["recent"].as_array().unwrap();
+    let preferences = window.folder.path().join("data").join("window.json");
+    let preferences: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(preferences).unwrap()).unwrap();
+    let recent = preferences["recent"].as_array().unwrap();
     assert!(
         recent.len() == 1,
         "the snapshot is in the strip, and no file that was open: {recent:?}"

@@ -3,12 +3,13 @@
 
 use egui::{Grid, RichText, Ui};
 
-use super::noise_plot::{self, COLORS, Plotted};
-use crate::app::compare::reference::{Measure, MeasuredReference};
+use super::measure::{Measure, Plotted};
+use super::noise_plot::{self, COLORS};
+use crate::app::compare::reference::MeasuredReference;
 use crate::app::compare::region_figures::RegionFigures;
-use crate::app::panels::{Panel, explain};
+use crate::app::compare::second_side::SecondSide;
 use crate::app::ui::theme::color;
-use crate::app::ui::widgets::{row, segments};
+use crate::app::ui::widgets::{explain, row, segments};
 use crate::format::rounded;
 use crate::image::export;
 use crate::image::metrics::Errors;
@@ -31,7 +32,7 @@ impl Column {
         self.cells.len()
     }
 
-    /// What it means.
+    /// Its meaning.
     pub fn help(&self) -> &'static str {
         self.help
     }
@@ -92,11 +93,11 @@ pub fn of_errors(errors: &[Errors], area: Option<Area>) -> Vec<Column> {
     ]
 }
 
-/// Of a rectangle: the noise, and the errors where there are any.
-pub fn of_part(part: &RegionFigures, errors: Option<&[Errors]>) -> Vec<Column> {
-    let mut columns = vec![noise(&part.sides)];
+/// Columns of a region: the noise, and the errors where there are any.
+pub fn of_region(region: &RegionFigures, errors: Option<&[Errors]>) -> Vec<Column> {
+    let mut columns = vec![noise(&region.sides)];
     if let Some(errors) = errors {
-        columns.extend(of_errors(errors, Some(part.area)));
+        columns.extend(of_errors(errors, Some(region.area)));
     }
     columns
 }
@@ -115,7 +116,7 @@ pub fn table(corner: &str, names: &[&str], columns: &[Column]) -> export::Figure
 }
 
 /// The title of the figures of a region.
-pub fn rectangle_title(area: &Area) -> String {
+pub fn region_title(area: &Area) -> String {
     format!("Region of {} × {} pixels", area.size.x, area.size.y)
 }
 
@@ -126,22 +127,21 @@ pub fn names(count: usize) -> &'static [&'static str] {
 
 /// Shows what is known of A and B, and how noise and errors went down. Of one picture the rest
 /// stands below it.
-pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
-    let second_side = panel.second_side;
+pub fn show(ui: &mut Ui, second_side: &SecondSide, reference: &mut MeasuredReference) {
     let both = second_side.comparison();
     if let Some(both) = both {
-        let errors = panel.reference.errors();
+        let errors = reference.errors();
         grid(ui, "sides", &of_sides(&both.sides));
         if let Some(errors) = errors {
             grid(ui, "errors", &of_errors(errors, None));
         }
-        if let Some(part) = second_side.part() {
-            explain(ui, &rectangle_title(&part.area));
-            grid(ui, "rectangle", &of_part(part, errors));
+        if let Some(region) = second_side.region_figures() {
+            explain(ui, &region_title(&region.area));
+            grid(ui, "rectangle", &of_region(region, errors));
         }
     }
-    if both.is_some() || panel.reference.held().is_some() {
-        over_time(ui, panel.reference, both.map(|_| second_side.histories()));
+    if both.is_some() || reference.loaded().is_some() {
+        over_time(ui, reference, both.map(|_| second_side.histories()));
     }
 }
 
@@ -169,7 +169,7 @@ fn over_time(ui: &mut Ui, reference: &mut MeasuredReference, noise: Option<&[Noi
     let errors = Measure::ALL.map(Plotted::Error);
     let first = noise.map(|_| Plotted::Noise);
     let mut all: Vec<Plotted> = first.into_iter().collect();
-    if reference.held().is_some() {
+    if reference.loaded().is_some() {
         all.extend(errors);
     }
     let place = all.iter().position(|plotted| *plotted == reference.plotted).unwrap_or(0);

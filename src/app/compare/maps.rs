@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use crate::app::compare::reference::Measure;
+use super::measure::Measure;
 use crate::app::document::Side;
-use crate::app::picture::display::Look;
+use crate::app::picture::look::Look;
 use crate::image::metrics::{ErrorMap, magma};
 use crate::image::ramp::{self, Scale};
 use crate::image::tone::{Tone, ToneCurve, false_color, linear_from_srgb};
@@ -23,7 +23,7 @@ pub enum Difference {
     Relative,
 }
 
-/// Whose noise.
+/// A map of noise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Noise {
     /// The standard error of a side's pixels.
@@ -32,7 +32,7 @@ pub enum Noise {
     Ratio,
 }
 
-/// What is made of two pictures.
+/// The kind of a map of two pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MapKind {
     /// How they differ.
@@ -46,17 +46,17 @@ pub enum MapKind {
 /// Numbers a pixel, as a picture to show.
 #[derive(Clone, Debug)]
 pub struct Map {
-    /// What it shows.
+    /// The kind of its numbers.
     pub kind: MapKind,
     /// The picture.
     pub picture: Arc<Picture>,
     /// How it is shown.
     pub look: Look,
-    /// What its colors mean.
+    /// The meaning of its colors.
     pub key: ColorKey,
 }
 
-/// What the colors of a map mean.
+/// The meaning of the colors of a map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ColorKey {
     /// The ramp of positive numbers.
@@ -102,7 +102,7 @@ impl ColorKey {
 
 /// The share of pixels that lie beyond the ends of a scale.
 const BEYOND: f32 = 0.01;
-/// What is added to the denominator of a relative difference, relative to the picture's mean.
+/// The number added to the denominator of a relative difference, relative to the picture's mean.
 const FLOOR: f32 = 0.01;
 
 impl Map {

@@ -2,7 +2,7 @@
 
 use egui::{Align2, Color32, Pos2, Rect, Sense, Stroke, TextStyle, Ui, pos2, vec2};
 
-use crate::app::compare::reference::Measure;
+use super::measure::Plotted;
 use crate::app::ui::theme::{color, space};
 use crate::app::ui::widgets::significant;
 use crate::render::compare::NoiseHistory;
@@ -15,62 +15,7 @@ const MARGIN: egui::Vec2 = vec2(44.0, 18.0);
 /// The colors of A and of B.
 pub const COLORS: [Color32; 2] = [color::CURVE_CHANCE, color::ACCENT];
 
-/// What is plotted.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Plotted {
-    /// The noise.
-    #[default]
-    Noise,
-    /// An error against the reference.
-    Error(Measure),
-}
-
-impl Plotted {
-    /// What it is called.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Noise => "Noise",
-            Self::Error(measure) => measure.name(),
-        }
-    }
-
-    /// What the plot shows.
-    pub fn help(self) -> &'static str {
-        match self {
-            Self::Noise => {
-                "Noise (relative standard error) over CPU time. It falls along the dotted slope: \
-                 half the noise takes four times the time. The lower line is the better strategy."
-            }
-            Self::Error(Measure::RelMse) => {
-                "Relative squared error over CPU time. Noise falls along the dotted slope: half \
-                 the error takes twice the time. A line that levels off is biased, or has reached \
-                 the noise of the reference."
-            }
-            Self::Error(Measure::Flip) => {
-                "FLIP over CPU time: the difference one perceives when flipping between the \
-                 displayed picture and the reference."
-            }
-        }
-    }
-
-    /// The power of time that it falls with while all of it is noise, if there is one.
-    fn power(self) -> Option<f64> {
-        match self {
-            Self::Noise => Some(0.5),
-            Self::Error(Measure::RelMse) => Some(1.0),
-            Self::Error(Measure::Flip) => None,
-        }
-    }
-
-    fn label(self, value: f64) -> String {
-        match self {
-            Self::Noise => format!("{} %", significant(100.0 * value)),
-            Self::Error(_) => significant(value),
-        }
-    }
-}
-
-/// What the axes cover, in powers of ten.
+/// The range of the axes, in powers of ten.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Range {
     low: [f64; 2],
@@ -78,7 +23,7 @@ struct Range {
 }
 
 impl Range {
-    /// Of all points, out to whole powers of ten in time; `None` where there is none.
+    /// The range of all points, out to whole powers of ten in time; `None` where there is none.
     fn of(histories: [&NoiseHistory; 2]) -> Option<Self> {
         let mut points = histories.into_iter().flat_map(NoiseHistory::points).peekable();
         points.peek()?;
@@ -135,7 +80,7 @@ pub fn show(ui: &mut Ui, histories: [&NoiseHistory; 2], plotted: Plotted) {
     }
 }
 
-/// What a screen reader says of the plot.
+/// The plot in words, for screen readers.
 fn spoken(histories: [&NoiseHistory; 2], plotted: Plotted) -> String {
     let last = |history: &NoiseHistory| match history.points().last() {
         Some([_, value]) => plotted.label(*value),
@@ -190,6 +135,7 @@ fn slope(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::compare::measure::Measure;
 
     #[test]
     fn axes_cover_all_points_out_to_powers_of_ten() {

@@ -5,23 +5,35 @@ use egui::{RichText, Ui};
 use super::figures;
 use crate::app::command::Command;
 use crate::app::compare::maps::{Difference, Noise};
-use crate::app::compare::reference::Measure;
-use crate::app::compare::second_side::{CompareLayout, FLIP, SecondSide};
-use crate::app::document::{Document, Side, strategy_name};
-use crate::app::panels::Panel;
+use crate::app::compare::measure::Measure;
+use crate::app::compare::reference::MeasuredReference;
+use crate::app::compare::second_side::{CompareLayout, FLIP_KEY, SecondSide};
+use crate::app::document::{Document, Editor, Side, strategy_name};
 use crate::app::ui::theme::color;
 use crate::app::ui::widgets::{capitalized, key_of, row, segments};
 use crate::render::compare::{Comparison, Verdict};
 use crate::render::turns::Share;
 
+/// The state that the panel of a comparison shows and may change.
+pub struct ComparePanel<'a> {
+    /// The document and its record of edits.
+    pub editor: &'a mut Editor,
+    /// The second side.
+    pub second_side: &'a SecondSide,
+    /// The reference and the errors against it.
+    pub reference: &'a mut MeasuredReference,
+    /// Commands that buttons ask for.
+    pub commands: &'a mut Vec<Command>,
+}
+
 /// Shows which side is edited, and how to begin or end a comparison.
-pub fn sides(ui: &mut Ui, panel: &mut Panel<'_>) {
+pub fn sides(ui: &mut Ui, panel: &mut ComparePanel<'_>) {
     if panel.second_side.stored.is_some() {
-        return stored(ui, panel);
+        return snapshot_sides(ui, panel);
     }
     let Some(compared) = panel.editor.document.compared else {
         button(ui, panel, Command::Compare, "Compare two strategies");
-        return figures::show(ui, panel);
+        return figures::show(ui, panel.second_side, panel.reference);
     };
     let names =
         [Side::A, Side::B].map(|side| name(side, &panel.editor.document, panel.second_side));
@@ -46,12 +58,12 @@ pub fn sides(ui: &mut Ui, panel: &mut Panel<'_>) {
             button(ui, panel, command, text);
         }
     });
-    figures::show(ui, panel);
+    figures::show(ui, panel.second_side, panel.reference);
     ui.separator();
 }
 
 /// Shows what the live picture is compared with, where that is a snapshot.
-fn stored(ui: &mut Ui, panel: &mut Panel<'_>) {
+fn snapshot_sides(ui: &mut Ui, panel: &mut ComparePanel<'_>) {
     let titles =
         [Side::A, Side::B].map(|side| side_title(side, &panel.editor.document, panel.second_side));
     titles.iter().for_each(|title| {
@@ -62,11 +74,11 @@ fn stored(ui: &mut Ui, panel: &mut Panel<'_>) {
             button(ui, panel, command, text);
         }
     });
-    figures::show(ui, panel);
+    figures::show(ui, panel.second_side, panel.reference);
     ui.separator();
 }
 
-fn button(ui: &mut Ui, panel: &mut Panel<'_>, command: Command, text: &str) {
+fn button(ui: &mut Ui, panel: &mut ComparePanel<'_>, command: Command, text: &str) {
     let help = format!("{}  [{}]", command.tooltip(), key_of(ui, command));
     if ui.button(text).on_hover_text(help).clicked() {
         panel.commands.push(command);
@@ -110,7 +122,7 @@ pub fn bias(document: &Document, second_side: &SecondSide) -> Option<&'static st
 }
 
 /// What both sides get equal shares of, and their seeds.
-fn shares(ui: &mut Ui, panel: &mut Panel<'_>) {
+fn shares(ui: &mut Ui, panel: &mut ComparePanel<'_>) {
     let Some(compared) = &mut panel.editor.document.compared else { return };
     let choices = [
         ("Time", "Both sides get the same CPU time: which is less noisy after the same time?"),
@@ -150,7 +162,7 @@ pub fn layouts(ui: &mut Ui, layout: &mut CompareLayout, (kinds, of_two): (&[Comp
 
 /// What a kind of view is called and what it shows.
 fn in_words(kind: CompareLayout, of_two: bool) -> (&'static str, String) {
-    let flip = format!(" Hold {} to see the other side.", FLIP.name());
+    let flip = format!(" Hold {} to see the other side.", FLIP_KEY.name());
     match kind {
         CompareLayout::Wipe if !of_two => ("Picture", "The picture.".to_owned()),
         CompareLayout::Wipe => {

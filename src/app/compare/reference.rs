@@ -1,4 +1,4 @@
-//! What pictures are measured against: a reference, the errors of what is shown, and how they went
+//! A reference that pictures are measured against, the errors of what is shown, and how they went
 //! down.
 
 mod load;
@@ -13,61 +13,23 @@ use glam::UVec2;
 pub use load::{LoadedReference, ReferenceOrigin};
 
 use super::maps::{Map, MapKind};
-use super::noise_plot::Plotted;
+use super::measure::{Measure, Plotted};
 use crate::app::document::Side;
-use crate::app::jobs::background::Background;
+use crate::app::jobs::background::{Background, BackgroundPool};
 use crate::error::Result;
-use crate::image::metrics::{ErrorMap, Errors, Viewing};
+use crate::image::metrics::{Errors, Viewing};
 use crate::image::tone::Tone;
+use crate::render::Picture;
 use crate::render::compare::NoiseHistory;
-use crate::render::pool::{Pool, Priority};
-use crate::render::{Area, Picture};
 use load::Loading;
 
 /// Measuring rests so many times as long as it took, for the machine is there to render.
 const REST: u32 = 9;
 
-/// How an error is measured.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Measure {
-    /// Squared errors in linear light, relative to the reference.
-    #[default]
-    RelMse,
-    /// What somebody notices who flips between the displayed pictures.
-    Flip,
-}
-
-impl Measure {
-    /// Both of them.
-    pub const ALL: [Self; 2] = [Self::RelMse, Self::Flip];
-
-    /// What it is called.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::RelMse => "relMSE",
-            Self::Flip => "FLIP",
-        }
-    }
-
-    /// The errors of this kind.
-    pub fn of(self, errors: &Errors) -> &ErrorMap {
-        match self {
-            Self::RelMse => &errors.rel_mse,
-            Self::Flip => &errors.flip,
-        }
-    }
-
-    /// Their mean over an area, or over all.
-    pub fn mean(self, errors: &Errors, area: Option<Area>) -> f64 {
-        let map = self.of(errors);
-        area.map_or(map.mean, |area| map.mean_of(area.first, area.size))
-    }
-}
-
-/// What is measured: one picture, or those of A and B.
+/// A measurement: of one picture, or of those of A and B.
 #[derive(Clone)]
 struct MeasureTask {
-    held: Arc<LoadedReference>,
+    reference: Arc<LoadedReference>,
     pictures: Vec<Arc<Picture>>,
     tone: Tone,
 }
@@ -80,7 +42,7 @@ impl MeasureTask {
 
     /// Whether only time has passed between the two.
     fn is_like(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.held, &other.held)
+        Arc::ptr_eq(&self.reference, &other.reference)
             && self.tone == other.tone
             && self.pictures.len() == other.pictures.len()
     }
@@ -90,7 +52,7 @@ impl MeasureTask {
         let pixels: Vec<&[[f32; 4]]> =
             self.pictures.iter().map(|picture| picture.pixels.as_slice()).collect();
         let viewing = Viewing { tone: self.tone, ..Viewing::default() };
-        let errors = Errors::of(&pixels, &self.held.reference, viewing).unwrap_or_default();
+        let errors = Errors::of(&pixels, &self.reference.reference, viewing).unwrap_or_default();
         MeasureResult { errors: Arc::new(errors), took: begun.elapsed(), ended: Instant::now() }
     }
 }
@@ -108,7 +70,7 @@ pub struct MeasureView {
     pub is_snapshot: bool,
 }
 
-/// What came of it; no errors where pictures and reference do not fit together.
+/// The result of a measurement; no errors where pictures and reference do not fit together.
 struct MeasureResult {
     errors: Arc<Vec<Errors>>,
     took: Duration,
@@ -128,26 +90,24 @@ struct MapTask {
     errors: Arc<Vec<Errors>>,
     measure: Measure,
     index: usize,
-    /// Whose map it is, where there are two.
+    /// The side whose map it is, where there are two.
     side: Option<Side>,
 }
 
 /// The reference and what is measured against it.
 pub struct MeasuredReference {
-    /// The threads that measure, which give way to the window's.
-    pool: Arc<Pool>,
-    held: Option<Arc<LoadedReference>>,
+    loaded: Option<Arc<LoadedReference>>,
     loading: Option<Loading>,
     /// The scene that is open, and the files of the references of it and of others, the one that was
     /// loaded last first.
     scene: String,
-    preferences: Vec<(String, PathBuf)>,
+    files: Vec<(String, PathBuf)>,
     errors: Background<MeasureTask, MeasureResult>,
     map: Background<MapTask, Option<Map>>,
     /// How relMSE and FLIP of both sides went down.
     histories: [[NoiseHistory; 2]; 2],
     noted: Option<Instant>,
-    /// What the panel plots over time.
+    /// The quantity that the panel plots over time.
     pub plotted: Plotted,
     /// The tone that FLIP's histories are of, and the side in the first of them.
     tone: Tone,
@@ -155,31 +115,26 @@ pub struct MeasuredReference {
 }
 
 impl MeasuredReference {
-    /// Without a reference, but with the files of those of some scenes; `threads` will measure
-    /// (`None`: one a core).
-    ///
-    /// # Errors
-    /// When the system refuses to start them.
-    pub fn new(threads: Option<usize>, preferences: Vec<(String, PathBuf)>) -> Result<Self> {
-        Ok(Self {
-            pool: Arc::new(Pool::new(threads, Priority::Background)?),
-            held: None,
+    /// Without a reference, but with the files of those of some scenes; `pool` will measure.
+    pub fn new(pool: &BackgroundPool, files: Vec<(String, PathBuf)>) -> Self {
+        Self {
+            loaded: None,
             loading: None,
             scene: String::new(),
-            preferences,
-            errors: Background::default(),
-            map: Background::default(),
+            files,
+            errors: Background::new(pool),
+            map: Background::new(pool),
             histories: Default::default(),
             noted: None,
             plotted: Plotted::default(),
             tone: Tone::default(),
             main: None,
-        })
+        }
     }
 
     /// The reference.
-    pub fn held(&self) -> Option<&Arc<LoadedReference>> {
-        self.held.as_ref()
+    pub fn loaded(&self) -> Option<&Arc<LoadedReference>> {
+        self.loaded.as_ref()
     }
 
     /// Whether a reference is on its way.
@@ -200,24 +155,24 @@ impl MeasuredReference {
     /// Takes the reference away.
     pub fn remove(&mut self) {
         self.forget();
-        self.remember(None);
+        self.note_file(None);
     }
 
     /// The files of the references of scenes, the one that was loaded last first.
-    pub fn preferences(&self) -> &[(String, PathBuf)] {
-        &self.preferences
+    pub fn files(&self) -> &[(String, PathBuf)] {
+        &self.files
     }
 
-    fn remember(&mut self, file: Option<&Path>) {
-        self.preferences.retain(|(scene, _)| *scene != self.scene);
+    fn note_file(&mut self, file: Option<&Path>) {
+        self.files.retain(|(scene, _)| *scene != self.scene);
         if let Some(file) = file {
             let file = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
-            self.preferences.insert(0, (self.scene.clone(), file));
+            self.files.insert(0, (self.scene.clone(), file));
         }
     }
 
     fn forget(&mut self) {
-        self.held = None;
+        self.loaded = None;
         self.loading = None;
         self.histories = Default::default();
     }
@@ -233,7 +188,7 @@ impl MeasuredReference {
         }
         self.forget();
         scene.clone_into(&mut self.scene);
-        match self.preferences.iter().find(|(other, _)| other == scene) {
+        match self.files.iter().find(|(other, _)| other == scene) {
             Some((_, path)) => self.load(ctx, ReferenceOrigin::file(path.clone())),
             None => Ok(()),
         }
@@ -243,16 +198,16 @@ impl MeasuredReference {
     pub fn poll(&mut self) -> Result<()> {
         let Some(result) = self.loading.as_ref().and_then(Loading::poll) else { return Ok(()) };
         self.loading = None;
-        let held = result.inspect_err(|_| self.remember(None))?;
-        self.remember(held.path.as_deref());
-        self.held = Some(Arc::new(held));
+        let loaded = result.inspect_err(|_| self.note_file(None))?;
+        self.note_file(loaded.path.as_deref());
+        self.loaded = Some(Arc::new(loaded));
         self.histories = Default::default();
         Ok(())
     }
 
     /// Whether it is of another size than pictures of `size`.
     pub fn is_of_another_size(&self, size: UVec2) -> bool {
-        self.held.as_ref().is_some_and(|held| held.reference.matches(size).is_err())
+        self.loaded.as_ref().is_some_and(|loaded| loaded.reference.matches(size).is_err())
     }
 
     /// Brings the errors in line with what is looked at, one picture or those of A and B.
@@ -268,16 +223,16 @@ impl MeasuredReference {
         }
         let fits = |picture: &Arc<Picture>| !self.is_of_another_size(picture.size);
         let has_all = !pictures.is_empty() && pictures.iter().all(fits);
-        let task = self.held.clone().filter(|_| has_all);
-        let task = task.map(|held| MeasureTask { held, pictures, tone });
+        let task = self.loaded.clone().filter(|_| has_all);
+        let task = task.map(|reference| MeasureTask { reference, pictures, tone });
         let task = task.and_then(|task| self.in_time(ctx, task));
-        let (wake, pool) = (ctx.clone(), self.pool.clone());
-        let measure = move |task: &MeasureTask| pool.install(|| task.measure());
+        let wake = ctx.clone();
+        let measure = MeasureTask::measure;
         self.errors.update(task, MeasureTask::same, measure, move || wake.request_repaint());
         self.note(seen);
     }
 
-    /// What should be measured now: `task`, or what was measured last while that rests.
+    /// The task to measure now: `task`, or the one measured last while measuring rests.
     fn in_time(&self, ctx: &Context, task: MeasureTask) -> Option<MeasureTask> {
         let done = self.errors.done().filter(|(done, _)| done.is_like(&task));
         let is_rough = task.pictures.iter().any(|picture| !picture.complete);

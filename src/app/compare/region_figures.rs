@@ -1,21 +1,21 @@
-//! What is known of a rectangle of one picture, or of two.
+//! The figures of a region of one picture, or of two.
 
 use std::sync::Arc;
 
 use crate::render::compare::{Comparison, SideFigures};
 use crate::render::{Area, Picture};
 
-/// One picture or those of A and B, and the rectangle.
+/// One picture or those of A and B, and the region whose figures are wanted.
 #[derive(Clone)]
-pub struct PartTask {
+pub struct RegionTask {
     /// The pictures.
     pub pictures: Vec<Arc<Picture>>,
-    /// The rectangle.
+    /// The region.
     pub area: Area,
 }
 
-impl PartTask {
-    /// Whether the same will be known of both.
+impl RegionTask {
+    /// Whether both tasks have the same figures.
     pub fn same(&self, other: &Self) -> bool {
         let pairs = std::iter::zip(&self.pictures, &other.pictures);
         self.area == other.area
@@ -24,9 +24,9 @@ impl PartTask {
     }
 }
 
-/// What is known of it.
+/// The figures of a region.
 pub struct RegionFigures {
-    /// The rectangle.
+    /// The region.
     pub area: Area,
     /// The figures of the one picture, or of A and B.
     pub sides: Vec<SideFigures>,
@@ -35,8 +35,8 @@ pub struct RegionFigures {
 }
 
 impl RegionFigures {
-    /// Looks at the rectangle.
-    pub fn of(task: &PartTask) -> Self {
+    /// The figures of the region of `task`.
+    pub fn of(task: &RegionTask) -> Self {
         let area = task.area;
         match &task.pictures[..] {
             [a, b] if a.size == b.size => {

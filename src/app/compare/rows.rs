@@ -1,24 +1,28 @@
 //! Rows under the picture: the region and the reference, with their figures.
 
+use std::sync::Arc;
+
 use egui::{DragValue, RichText, Ui};
 use glam::UVec2;
 
-use super::figures::{Column, names, of_errors, of_part};
+use super::figures::{Column, names, of_errors, of_region};
 use super::panel;
+use super::state::CompareState;
 use crate::app::command::Command;
 use crate::app::compare::reference::MeasuredReference;
 use crate::app::compare::region_figures::RegionFigures;
+use crate::app::document::Document;
 use crate::app::picture::region::PictureRegion;
-use crate::app::ui::theme::{color, space};
+use crate::app::ui::theme::{self, color, space};
 use crate::app::ui::widgets::key_of;
 use crate::image::metrics::Errors;
-use crate::render::Area;
+use crate::render::{Area, Picture};
 use crate::scene::Settings;
 
 /// Width of a field for pixels.
 const FIELD: f32 = 48.0;
 
-/// What a row asks for.
+/// The request of a row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Asked {
     /// A command.
@@ -27,13 +31,76 @@ pub enum Asked {
     Size(UVec2),
 }
 
-/// Shows the rectangle on pictures of `size` and what is known of it; `biased` says which sides
-/// are.
-pub fn region(
+/// Shows how A and B, the region and the reference are looked at and what is known of them; nothing
+/// where there is none of them. `pictures` are those that figures are told of, `live` the live one.
+pub fn show(
+    ui: &mut Ui,
+    compare: &mut CompareState,
+    document: &Document,
+    pictures: &[Arc<Picture>],
+    live: Option<&Arc<Picture>>,
+) -> Option<Asked> {
+    let has_region = compare.region.is_armed() || compare.region.is_set();
+    let has_reference = compare.reference.loaded().is_some() || compare.reference.is_loading();
+    if !(compare.second_side.is_on() || has_region || has_reference) {
+        return None;
+    }
+    let panel = egui::Panel::bottom("compare").frame(theme::panel_frame());
+    let asked = panel.show(ui, |ui| {
+        let view = view_row(ui, compare, document, live);
+        let Some(picture) = pictures.first() else { return view };
+        if has_region {
+            let biased = compare.biased(document);
+            let CompareState { second_side, reference, region, .. } = compare;
+            let told = (second_side.region_figures(), reference.errors(), biased);
+            ui.horizontal_wrapped(|ui| self::region(ui, region, picture.size, told));
+        }
+        if !has_reference {
+            return view;
+        }
+        let looked_at = (picture.size, &document.settings);
+        let row = |ui: &mut Ui| reference(ui, &compare.reference, looked_at);
+        ui.horizontal_wrapped(row).inner.or(view)
+    });
+    asked.inner
+}
+
+/// Shows how the pictures are looked at where there is a choice, and the verdict on A and B.
+fn view_row(
+    ui: &mut Ui,
+    compare: &mut CompareState,
+    document: &Document,
+    live: Option<&Arc<Picture>>,
+) -> Option<Asked> {
+    let kinds = compare.layouts();
+    if kinds.len() < 2 {
+        return None;
+    }
+    let of_two = compare.second_side.is_on();
+    let row = |ui: &mut Ui| {
+        panel::layouts(ui, &mut compare.second_side.layout, (&kinds, of_two));
+        if !of_two {
+            return None;
+        }
+        ui.separator();
+        match compare.other_size(live) {
+            Some(size) => other_size(ui, size),
+            None => {
+                let biased = compare.biased(document);
+                panel::verdict(ui, compare.second_side.comparison(), biased);
+                None
+            }
+        }
+    };
+    ui.horizontal_wrapped(row).inner
+}
+
+/// Shows the rectangle on pictures of `size` and what is known of it; `biased` says which sides are.
+fn region(
     ui: &mut Ui,
     region: &mut PictureRegion,
     size: UVec2,
-    (part, errors, biased): (Option<&RegionFigures>, Option<&[Errors]>, [bool; 2]),
+    (figures, errors, biased): (Option<&RegionFigures>, Option<&[Errors]>, [bool; 2]),
 ) {
     let Some(area) = region.area(size) else {
         ui.label(RichText::new("Drag a region over the picture.").color(color::ACCENT));
@@ -56,10 +123,10 @@ pub fn region(
     let alone = Command::SamplesHere;
     let help = format!("{}  [{}]", alone.tooltip(), key_of(ui, alone));
     ui.toggle_value(&mut region.is_alone, "Render region only").on_hover_text(help);
-    let Some(part) = part else { return };
-    match &part.comparison {
+    let Some(figures) = figures else { return };
+    match &figures.comparison {
         Some(comparison) => panel::verdict(ui, Some(comparison), biased),
-        None => told(ui, &of_part(part, errors)),
+        None => told(ui, &of_region(figures, errors)),
     }
 }
 
@@ -105,7 +172,7 @@ fn told(ui: &mut Ui, columns: &[Column]) {
 }
 
 /// Says that a snapshot of `size` and the live picture have different sizes.
-pub fn other_size(ui: &mut Ui, size: UVec2) -> Option<Asked> {
+fn other_size(ui: &mut Ui, size: UVec2) -> Option<Asked> {
     let text =
         format!("The snapshot has {} × {} pixels, the live picture another size.", size.x, size.y);
     ui.label(RichText::new(text).color(color::WARNING));
@@ -119,19 +186,19 @@ fn take_size(ui: &mut Ui, size: UVec2) -> Option<Asked> {
 }
 
 /// Shows the reference for pictures of `size`, rendered with `settings`, and how far off they are.
-pub fn reference(
+fn reference(
     ui: &mut Ui,
     reference: &MeasuredReference,
     (size, settings): (UVec2, &Settings),
 ) -> Option<Asked> {
     let mut asked = None;
     ui.label(RichText::new("Reference").color(color::TEXT_STRONG));
-    let Some(held) = reference.held() else {
+    let Some(loaded) = reference.loaded() else {
         ui.label(RichText::new("Loading…").color(color::ACCENT));
         return None;
     };
-    let of = held.reference.size();
-    ui.add(egui::Label::new(RichText::new(&held.name).color(color::TEXT)).truncate());
+    let of = loaded.reference.size();
+    ui.add(egui::Label::new(RichText::new(&loaded.name).color(color::TEXT)).truncate());
     let remove = Command::RemoveReference;
     let help = format!("{}  [{}]", remove.tooltip(), key_of(ui, remove));
     if ui.button("Remove").on_hover_text(help).clicked() {
@@ -143,7 +210,7 @@ pub fn reference(
         ui.label(RichText::new(text).color(color::WARNING));
         return take_size(ui, of).or(asked);
     }
-    if let Some(doubt) = held.doubt(settings) {
+    if let Some(doubt) = loaded.doubt(settings) {
         let text = format!("Errors mean little: {doubt}.");
         ui.label(RichText::new(text).color(color::WARNING))
             .on_hover_text("The reference does not show what this picture shows.");

@@ -7,12 +7,12 @@ use egui::{Context, Key};
 use glam::UVec2;
 
 use super::maps::{Difference, Map, MapKind, Noise};
-use super::reference::Measure;
-use super::region_figures::{PartTask, RegionFigures};
+use super::measure::Measure;
+use super::region_figures::{RegionFigures, RegionTask};
 use crate::app::document::{Compared, Document, Side};
-use crate::app::jobs::background::Background;
+use crate::app::jobs::background::{Background, BackgroundPool};
 use crate::app::jobs::live_render::{LiveRender, News};
-use crate::app::picture::display::Look;
+use crate::app::picture::look::Look;
 use crate::app::picture::viewport::Shown;
 use crate::error::Result;
 use crate::render::compare::{Comparison, NoiseHistory};
@@ -20,7 +20,7 @@ use crate::render::session::{Sharing, TurnToken};
 use crate::render::{Area, Layer, Picture};
 
 /// The key that shows the other side while it is held.
-pub const FLIP: Key = Key::H;
+pub const FLIP_KEY: Key = Key::H;
 
 /// How A and B are shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -77,7 +77,7 @@ impl CompareLayout {
         }
     }
 
-    /// What is computed for it of two pictures.
+    /// The map that it needs of two pictures.
     fn map(self) -> Option<MapKind> {
         match self {
             Self::Wipe | Self::Beside | Self::Error(..) => None,
@@ -92,7 +92,7 @@ impl CompareLayout {
 pub struct StoredSide {
     /// The side.
     pub side: Side,
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// The picture with its variance, once it is read.
     pub picture: Option<Arc<Picture>>,
@@ -107,7 +107,7 @@ pub struct SecondSide {
     pub stored: Option<StoredSide>,
     /// The comparison of the last frame.
     last: Option<Compared>,
-    /// Of the two sessions while there are two.
+    /// The tokens of the two sessions while there are two.
     seats: [TurnToken; 2],
     threads: Option<usize>,
     /// How both are shown.
@@ -116,14 +116,14 @@ pub struct SecondSide {
     pub divider: f32,
     map: Background<BothPictures, Option<Map>>,
     figures: Background<[Arc<Picture>; 2], Comparison>,
-    part: Background<PartTask, RegionFigures>,
+    region_figures: Background<RegionTask, RegionFigures>,
     /// How the noise of A and of B went down.
     histories: [NoiseHistory; 2],
     /// The side of the main engine when they were last added to.
     noted: Option<Side>,
 }
 
-/// Both pictures, and what is to be made of them.
+/// Both pictures, and the map to make of them.
 #[derive(Clone)]
 struct BothPictures {
     pictures: [Arc<Picture>; 2],
@@ -138,8 +138,8 @@ impl BothPictures {
 }
 
 impl SecondSide {
-    /// None yet; the second side will have `threads` workers.
-    pub fn new(threads: Option<usize>) -> Self {
+    /// None yet; the second side will have `threads` workers, and `pool` makes maps and figures.
+    pub fn new(threads: Option<usize>, pool: &BackgroundPool) -> Self {
         Self {
             second_render: None,
             stored: None,
@@ -148,9 +148,9 @@ impl SecondSide {
             threads,
             layout: CompareLayout::default(),
             divider: 0.5,
-            map: Background::default(),
-            figures: Background::default(),
-            part: Background::default(),
+            map: Background::new(pool),
+            figures: Background::new(pool),
+            region_figures: Background::new(pool),
             histories: Default::default(),
             noted: None,
         }
@@ -326,19 +326,25 @@ impl SecondSide {
         }
     }
 
-    /// Brings the figures of a rectangle in line with what is looked at, one picture or both.
-    pub fn update_part(&mut self, ctx: &Context, pictures: Vec<Arc<Picture>>, area: Option<Area>) {
-        let task = area.map(|area| PartTask { pictures, area });
+    /// Brings the figures of a region in line with what is looked at, one picture or both.
+    pub fn update_region_figures(
+        &mut self,
+        ctx: &Context,
+        pictures: Vec<Arc<Picture>>,
+        area: Option<Area>,
+    ) {
+        let task = area.map(|area| RegionTask { pictures, area });
         let wake = ctx.clone();
-        self.part.update(task, PartTask::same, RegionFigures::of, move || wake.request_repaint());
+        self.region_figures
+            .update(task, RegionTask::same, RegionFigures::of, move || wake.request_repaint());
     }
 
-    /// What is known of the rectangle, once it is.
-    pub fn part(&self) -> Option<&RegionFigures> {
-        self.part.done().map(|(_, part)| part)
+    /// The figures of the region, once they are known.
+    pub fn region_figures(&self) -> Option<&RegionFigures> {
+        self.region_figures.done().map(|(_, figures)| figures)
     }
 
-    /// What is known of both sides, once both have a picture.
+    /// The figures of both sides, once both have a picture.
     pub fn comparison(&self) -> Option<&Comparison> {
         self.figures.done().map(|(_, comparison)| comparison)
     }
@@ -368,7 +374,7 @@ impl SecondSide {
         map.as_ref().filter(|_| pair.kind == wanted)
     }
 
-    /// What the viewport shows of the `pictures` of both sides, `map` in their place if there is one.
+    /// The view of the `pictures` of both sides, `map` in their place if there is one.
     pub fn shown(
         &self,
         ctx: &Context,
@@ -376,7 +382,7 @@ impl SecondSide {
         (look, active): (Look, Side),
         map: Option<&Map>,
     ) -> Shown {
-        if ctx.input(|input| input.key_down(FLIP)) && !ctx.text_edit_focused() {
+        if ctx.input(|input| input.key_down(FLIP_KEY)) && !ctx.text_edit_focused() {
             let [a, b] = pictures;
             let other = if active == Side::A { b } else { a };
             return Shown::One(other, look);

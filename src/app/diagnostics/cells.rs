@@ -1,11 +1,11 @@
-//! The strongest cells of a scene's volumes, gathered behind the window's back.
+//! The strongest cells of a scene's volumes, gathered off the window's thread.
 
-use crate::app::jobs::background::Background;
 use std::sync::Arc;
 
 use glam::Vec3A;
 
-use super::{CellValue, Scale};
+use crate::app::jobs::background::{Background, BackgroundPool};
+use crate::image::ramp::Scale;
 use crate::math::Aabb;
 use crate::transport::Scene;
 use crate::transport::probes::Probes;
@@ -15,6 +15,17 @@ use crate::volume::{CoefficientBounds, Region};
 /// The most cells that are drawn.
 pub const MOST: usize = 4000;
 
+/// The value that the cells drawn over the picture are colored by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CellValue {
+    /// The local majorant: the largest extinction in the cell, 1/length.
+    Majorant,
+    /// The power the cell emits, radiance × length².
+    Energy,
+    /// The light scattered towards the camera as each probe estimates it, radiance/length.
+    Probes,
+}
+
 /// A cell in the world.
 #[derive(Clone, Debug)]
 pub struct Cell {
@@ -22,7 +33,7 @@ pub struct Cell {
     pub corners: [Vec3A; 8],
     /// The edge of a cube of its volume.
     pub edge: f32,
-    /// What it is colored by.
+    /// The value that it is colored by.
     pub value: f32,
 }
 
@@ -112,13 +123,13 @@ fn visit(instance: &Instance, value: CellValue, mut found: impl FnMut(&Aabb, f32
 #[derive(Default)]
 struct Sieve<'a> {
     kept: Vec<Candidate<'a>>,
-    /// What a candidate must exceed once enough are kept.
+    /// The value that a candidate must exceed once enough are kept.
     threshold: f32,
     total: usize,
 }
 
 struct Candidate<'a> {
-    /// Whose space it is given in; the world's if none.
+    /// The instance in whose space it is given; the world's if none.
     instance: Option<&'a Instance>,
     local: Aabb,
     value: f32,
@@ -155,18 +166,17 @@ impl<'a> Sieve<'a> {
     }
 }
 
-/// Gathers cells behind the window's back.
-#[derive(Default)]
+/// Gathers cells off the window's thread.
 pub struct Gathering(Background<CellSource, Cells>);
 
-/// What cells are gathered from.
+/// The source that cells are gathered from.
 #[derive(Clone)]
 pub struct CellSource {
-    /// What they are colored by.
+    /// The value that they are colored by.
     pub value: CellValue,
     /// Has the volumes and the camera.
     pub scene: Arc<Scene>,
-    /// Those of the scene, where they are wanted and there.
+    /// The probes of the scene, where they are wanted and there.
     pub probes: Option<Arc<Probes>>,
 }
 
@@ -196,6 +206,11 @@ impl CellSource {
 }
 
 impl Gathering {
+    /// No cells yet; `pool` will gather them.
+    pub fn new(pool: &BackgroundPool) -> Self {
+        Self(Background::new(pool))
+    }
+
     /// Brings the cells in line with what is wanted; `wake` is called when they are there.
     pub fn update(&mut self, wanted: Option<CellSource>, wake: impl FnOnce() + Send + 'static) {
         self.0.update(wanted, CellSource::has_cells_of, CellSource::gather, wake);

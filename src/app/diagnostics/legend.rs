@@ -1,14 +1,15 @@
-//! What the colors mean, in a corner of the picture.
+//! The meaning of colors, in a corner of the picture.
 
 use egui::{Align, Frame, Label, Layout, Margin, Rect, RichText, Ui, UiBuilder, pos2, vec2};
 
-use super::cells::Cells;
-use super::{CellValue, Scale, overlay};
+use super::cells::{CellValue, Cells};
+use super::overlay;
 use crate::app::compare::maps::{ColorKey, Difference, MapKind, Noise};
-use crate::app::compare::reference::Measure;
+use crate::app::compare::measure::Measure;
 use crate::app::document::Side;
 use crate::app::ui::theme::{color, space};
 use crate::app::ui::widgets::significant;
+use crate::image::ramp::Scale;
 use crate::image::tone::false_color;
 use crate::render::Layer;
 
@@ -21,16 +22,16 @@ const OPACITY: f32 = 0.85;
 
 /// One ramp with its numbers.
 pub struct Legend {
-    /// What the numbers are.
+    /// The quantity, with its unit.
     pub title: &'static str,
     /// Their colors, where there are any.
     pub colors: Option<ColorKey>,
-    /// What else is to be said about them.
+    /// A remark below the numbers.
     pub note: String,
 }
 
 impl Legend {
-    /// Of a layer of numbers.
+    /// The legend of a layer of numbers.
     pub fn of_layer(layer: Layer, scale: Scale) -> Self {
         let (title, note) = match layer {
             Layer::Depth => ("Depth, length", "Black: nothing hit"),
@@ -42,13 +43,13 @@ impl Legend {
         Self { title, colors: Some(ColorKey::Ramp(scale)), note: note.to_owned() }
     }
 
-    /// Of false color.
+    /// The legend of false color.
     pub fn of_stops() -> Self {
         let note = "Green: middle gray, with exposure".to_owned();
         Self { title: "Stops from middle gray", colors: Some(ColorKey::Stops), note }
     }
 
-    /// Of a map of two pictures.
+    /// The legend of a map of two pictures.
     pub fn of_map(kind: MapKind, colors: ColorKey) -> Self {
         let (title, note) = match kind {
             MapKind::Difference(Difference::Signed) => {
@@ -76,7 +77,7 @@ impl Legend {
         Self { title, colors: Some(colors), note: note.to_owned() }
     }
 
-    /// Of the cells over the picture.
+    /// The legend of the cells over the picture.
     pub fn of_cells(value: CellValue, cells: &Cells) -> Self {
         let (title, none, what) = match value {
             CellValue::Majorant => ("Majorant, 1/length", "No volume has cells.", "cell"),

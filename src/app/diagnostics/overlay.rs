@@ -5,9 +5,9 @@ use egui::{Color32, Mesh, Painter, Rect, Shape, Stroke, Ui};
 use glam::{UVec2, Vec3A};
 
 use super::cells::{Cell, Cells};
-use super::{Scale, picture_rect};
 use crate::app::picture::ramp_color;
-use crate::app::picture::viewport::View;
+use crate::app::picture::view::View;
+use crate::image::ramp::{STOPS, Scale};
 use crate::transport::camera::Camera;
 
 /// Up to this many cells are drawn as boxes.
@@ -20,7 +20,7 @@ const DOT: f32 = 0.22;
 const DOT_SIDES: [f32; 2] = [1.5, 10.0];
 /// How much of the picture a dot covers.
 const DOT_OPACITY: f32 = 0.8;
-/// What is nearer to the camera than this share of a cell's edge is cut off.
+/// Lines nearer to the camera than this share of a cell's edge are cut off.
 const NEAR: f32 = 1e-4;
 
 /// The edges of a box as pairs of corners that differ in one bit.
@@ -41,7 +41,7 @@ const EDGES: [(usize, usize); 12] = [
 
 /// Draws `cells` as `camera` sees them over the picture in `view`.
 pub fn paint(ui: &Ui, view: View, camera: &Camera, cells: &Cells, scale: Scale) {
-    let rect = picture_rect(&view, view.size);
+    let rect = view.picture_rect();
     let painter = ui.painter_at(rect);
     let canvas = OverlayCanvas { view, camera, size: view.size };
     if cells.strongest.len() <= MOST_BOXES {
@@ -58,7 +58,7 @@ pub fn paint(ui: &Ui, view: View, camera: &Camera, cells: &Cells, scale: Scale) 
 struct OverlayCanvas<'a> {
     view: View,
     camera: &'a Camera,
-    /// Of the picture in pixels.
+    /// Width and height of the picture in pixels.
     size: UVec2,
 }
 
@@ -111,8 +111,8 @@ fn in_front(line: [Vec3A; 2], near: f32) -> Option<[Vec3A; 2]> {
 /// The colors of a scale as a bar, from left to right; `color` gives that of a place in 0..=1.
 pub fn bar(rect: Rect, color: impl Fn(f32) -> Color32) -> Mesh {
     let mut mesh = Mesh::default();
-    for index in 0..=ramp_color::STOPS as u32 - 1 {
-        let place = index as f32 / (ramp_color::STOPS - 1) as f32;
+    for index in 0..=STOPS as u32 - 1 {
+        let place = index as f32 / (STOPS - 1) as f32;
         let color = color(place);
         let x = egui::lerp(rect.x_range(), place);
         mesh.colored_vertex(egui::pos2(x, rect.top()), color);

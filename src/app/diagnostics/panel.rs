@@ -2,10 +2,11 @@
 
 use egui::Ui;
 
-use crate::app::diagnostics::{CellValue, Wanted};
-use crate::app::panels::{explain, folded_section};
+use super::Wanted;
+use super::cells::CellValue;
+use crate::app::ui::sections::folded_section;
 use crate::app::ui::theme::space;
-use crate::app::ui::widgets::{row_label, segments};
+use crate::app::ui::widgets::{explain, row_label, segments};
 use crate::render::Layer;
 
 const CELLS: [(Option<CellValue>, &str, &str); 4] = [

@@ -3,7 +3,7 @@
 use egui::{RichText, Stroke, Ui};
 use egui_plot::{GridMark, Line, Plot, PlotPoints, PlotUi, VLine, uniform_grid_spacer};
 
-use super::ray::{DENSITIES, RayCurve, SHARES};
+use super::curves::{DENSITIES, RayCurve, SHARES};
 use crate::app::ui::theme::color;
 use crate::app::ui::widgets::significant;
 use crate::transport::profile::ProfileRow;

@@ -2,13 +2,14 @@
 
 use std::sync::Arc;
 
-use egui::{Color32, Context, CursorIcon, Grid, Label, RichText, Sense, Stroke, Ui, pos2, vec2};
+use egui::{Context, CursorIcon, Grid, Label, RichText, Sense, Stroke, Ui, pos2, vec2};
 use glam::{UVec2, Vec2};
 
+use super::curves::{DENSITIES, RayCurve, SHARES};
 use super::plots;
-use crate::app::jobs::background::Background;
+use crate::app::jobs::background::{Background, BackgroundPool};
 use crate::app::jobs::live_render::LiveRender;
-use crate::app::picture::viewport::View;
+use crate::app::picture::view::View;
 use crate::app::ui::theme::{color, space};
 use crate::app::ui::widgets::significant;
 use crate::error::NO_PROGRESS;
@@ -25,85 +26,13 @@ const COLUMNS: [f32; 2] = [110.0, 50.0];
 /// Height of a row of the legend.
 const ROW: f32 = 15.0;
 
-/// A curve as the legend explains it.
-pub struct RayCurve {
-    /// What it shows.
-    pub name: &'static str,
-    /// The unit of its values.
-    pub unit: &'static str,
-    /// What it means.
-    pub help: &'static str,
-    /// Its color.
-    pub color: Color32,
-    /// Its value in a row.
-    pub value: fn(&ProfileRow) -> f32,
-}
-
-/// The curves over 1/length.
-pub const DENSITIES: [RayCurve; 3] = [
-    RayCurve {
-        name: "Extinction",
-        unit: "1/length",
-        help: "μ_t: absorption plus scattering coefficient of the medium.",
-        color: color::CURVE,
-        value: |row| row.mu_t,
-    },
-    RayCurve {
-        name: "Null-collision pdf",
-        unit: "1/length",
-        help: "p_null = μ_t T: the pdf of scattering here by null-collision sampling.",
-        color: color::CURVE_CHANCE,
-        value: |row| row.p_null,
-    },
-    RayCurve {
-        name: "Probe pdf",
-        unit: "1/length",
-        help: "p_select: the pdf of scattering here by probes and equiangular sampling.",
-        color: color::CURVE_PROBES,
-        value: |row| row.p_select,
-    },
-];
-
-/// The curves from 0 to 1; the emission as a share of its peak.
-pub const SHARES: [RayCurve; 4] = [
-    RayCurve {
-        name: "Transmittance",
-        unit: "",
-        help: "T: the fraction of light transmitted from here to the camera.",
-        color: color::CURVE,
-        value: |row| row.transmittance,
-    },
-    RayCurve {
-        name: "Emission",
-        unit: "radiance/length",
-        help: "ε: the radiance that the medium emits per unit length. The curve is relative to its \
-               peak.",
-        color: color::CURVE_GLOW,
-        value: |row| row.emission,
-    },
-    RayCurve {
-        name: "Null-collision weight",
-        unit: "",
-        help: "The MIS weight of scattering here by null-collision sampling.",
-        color: color::CURVE_CHANCE,
-        value: |row| row.weight_null,
-    },
-    RayCurve {
-        name: "Probe weight",
-        unit: "",
-        help: "The MIS weight of scattering here by probes and equiangular sampling.",
-        color: color::CURVE_PROBES,
-        value: |row| row.weight_guided,
-    },
-];
-
-/// What the ray is looked into with.
+/// The scene and the pixel whose ray is looked into.
 #[derive(Clone)]
 struct RayScene {
     scene: Arc<Scene>,
     probes: Option<Arc<Probes>>,
     pixel: UVec2,
-    /// Of the picture.
+    /// Width and height of the picture in pixels.
     size: UVec2,
 }
 
@@ -135,7 +64,7 @@ impl RayScene {
     }
 }
 
-/// What was found along a ray.
+/// The findings along a ray.
 struct Found {
     /// Kept for the next ray of the same picture: what pays in it takes a while to find out.
     frame: Arc<PreparedFrame>,
@@ -144,7 +73,6 @@ struct Found {
 }
 
 /// The picked pixel and what is known of its ray.
-#[derive(Default)]
 pub struct Inspector {
     /// Where in the picture, in shares of its sides.
     picked: Option<Vec2>,
@@ -154,10 +82,16 @@ pub struct Inspector {
 }
 
 impl Inspector {
+    /// No pixel is picked yet; `pool` will look into rays.
+    pub fn new(pool: &BackgroundPool) -> Self {
+        Self { picked: None, profile: Background::new(pool), at: None }
+    }
+
     /// Brings the table in line with pixel and scene; forgets both unless `wanted`.
     pub fn update(&mut self, ctx: &Context, wanted: bool, engine: &LiveRender) {
         if !wanted {
-            *self = Self::default();
+            (self.picked, self.at) = (None, None);
+            self.profile.clear();
             return;
         }
         let size = engine.picture().map(|picture| picture.size);
@@ -224,7 +158,7 @@ impl Inspector {
         let read = ui
             .horizontal_top(|ui| {
                 let read = ui.vertical(|ui| plots::show(ui, &profile.rows, at)).inner;
-                ui.vertical(|ui| readout(ui, row_at(&profile.rows, read.unwrap_or(at))));
+                ui.vertical(|ui| row_values(ui, row_at(&profile.rows, read.unwrap_or(at))));
                 read
             })
             .inner;
@@ -251,7 +185,7 @@ fn row_at(rows: &[ProfileRow], t: f32) -> ProfileRow {
 }
 
 /// The legend, with the values of one row.
-fn readout(ui: &mut Ui, row: ProfileRow) {
+fn row_values(ui: &mut Ui, row: ProfileRow) {
     ui.spacing_mut().item_spacing = vec2(space::ROW, 2.0);
     let distance = format!("At distance {}", significant(f64::from(row.t)));
     ui.label(RichText::new(distance).color(color::TEXT_STRONG));

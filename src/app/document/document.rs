@@ -1,4 +1,4 @@
-//! What the window edits, and the record of edits for undo and redo.
+//! The document that the window edits, and the record of edits for undo and redo.
 
 use std::time::{Duration, Instant};
 
@@ -52,7 +52,7 @@ pub struct Compared {
     pub other: Strategy,
     /// Whether B draws other random numbers than A.
     pub own_seed: bool,
-    /// What both sides get equal shares of.
+    /// Whether both sides get equal CPU time or equal samples.
     pub share: Share,
 }
 
@@ -104,7 +104,7 @@ impl Document {
         }
     }
 
-    /// What a side renders.
+    /// The settings that a side renders.
     pub fn settings_of(&self, side: Side) -> Settings {
         let mut settings = self.settings.clone();
         settings.strategy = self.strategy_of(side);
@@ -118,7 +118,7 @@ impl Document {
 /// From the seed of A to that of B, where B has its own.
 const OTHER_SEED: u64 = 1 << 32;
 
-/// What a strategy is called.
+/// The name of a strategy.
 pub fn strategy_name(strategy: &Strategy) -> &'static str {
     match strategy.preset() {
         _ if strategy.is_biased() => "ray marching",

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use crate::app::command::Command;
 
-/// What a path is wanted for.
+/// The purpose of a path that is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
     /// To open a scene, a volume or a snapshot.
@@ -24,7 +24,7 @@ pub enum Purpose {
 }
 
 impl Purpose {
-    /// What asks for it, and so what it is called.
+    /// The command that asks for it, whose text is its title.
     pub fn command(self) -> Command {
         match self {
             Self::Open => Command::Open,
@@ -73,7 +73,7 @@ pub enum Dialogs {
     Typed,
 }
 
-/// What came of a system dialog.
+/// The answer of a system dialog.
 #[derive(Debug, PartialEq, Eq)]
 pub enum DialogAnswer {
     /// A path was chosen.

@@ -6,10 +6,9 @@ use std::time::{Duration, Instant};
 
 use glam::UVec2;
 
+use super::built::{BuiltScene, Grids, RenderStart};
 use super::probe_placer::ProbePlacer;
-use super::scene_loader::{
-    BuiltScene, Grids, LoadJob, LoadOutcome, LoadReport, Loader, RenderStart,
-};
+use super::scene_loader::{LoadJob, LoadOutcome, LoadReport, Loader};
 use crate::app::ui::notices::Notice;
 use crate::error::{Error, Result};
 use crate::render::publish::Extras;
@@ -22,15 +21,15 @@ use crate::transport::probes::Probes;
 /// A build that takes longer than this gives way to the next edit, and shows how far it is.
 const PATIENCE: Duration = Duration::from_millis(250);
 
-/// What happened since the last frame.
+/// An event since the last frame.
 pub enum News {
     /// A file was opened.
     Opened {
         /// Where it came from, as the user named it.
         source: String,
-        /// What it holds.
+        /// Its scene.
         settings: Box<Settings>,
-        /// What was guessed for a bare volume.
+        /// The guesses made for a bare volume.
         notes: Vec<Note>,
         /// How it goes on, where it was a snapshot, which keeps the size of its film.
         reopened: Option<Notice>,
@@ -48,7 +47,7 @@ pub enum News {
 /// The loader and the session, and what they are at.
 pub struct LiveRender {
     loader: Loader,
-    /// The volumes, which a rival shares.
+    /// The volumes that were read, which the second side shares.
     cache: Arc<VolumeCache>,
     session: Arc<Session>,
     probe_placer: Arc<ProbePlacer>,
@@ -80,7 +79,7 @@ pub struct LiveRender {
 /// The render under way.
 struct Started {
     scene: Arc<Scene>,
-    /// What it was built from, with the film's own size.
+    /// The settings that it was built from, with the film's own size.
     settings: Settings,
     generation: u64,
 }
@@ -171,7 +170,7 @@ impl LiveRender {
         self.building.is_some()
     }
 
-    /// What is being opened.
+    /// The source that is being opened.
     pub fn opening(&self) -> Option<&str> {
         self.opening.as_ref().map(|(source, _)| source.as_str())
     }
@@ -209,7 +208,7 @@ impl LiveRender {
         &self.session
     }
 
-    /// What the film of the session shows: the settings that it was built from, with its own size.
+    /// The settings of the session's film: those that it was built from, with its own size.
     pub fn rendered(&self) -> Option<&Settings> {
         self.started.as_ref().map(|started| &started.settings)
     }

@@ -4,9 +4,10 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use super::scene_loader::{BuiltScene, RenderStart};
+use super::built::{BuiltScene, RenderStart};
+use super::mailbox::Mailbox;
 use crate::error::{Error, Progress, Result};
 use crate::render::pool::{Pool, Priority};
 use crate::render::{Request, Resume, Session};
@@ -26,19 +27,24 @@ pub struct ProbePlacer {
 }
 
 struct Shared {
-    desk: Mutex<Desk>,
-    bell: Condvar,
+    state: Mutex<PlacerState>,
+    requests: Mailbox<PlaceRequest>,
     /// Grows when what is being placed is wanted no more.
     generation: AtomicU64,
 }
 
+/// A scene to place probes in, wanted as long as the generation is the present one.
+struct PlaceRequest {
+    built: BuiltScene,
+    generation: u64,
+}
+
 #[derive(Default)]
-struct Desk {
-    /// The probes placed last, and what from.
+struct PlacerState {
+    /// The probes placed last, and the scene that they were placed in.
     ready: Option<(BuiltScene, Option<Arc<Probes>>)>,
     /// The render that awaits its probes.
     waiting: Option<(BuiltScene, RenderStart)>,
-    closed: bool,
 }
 
 impl ProbePlacer {
@@ -49,23 +55,27 @@ impl ProbePlacer {
     /// When the system refuses to start threads.
     pub fn new(session: Arc<Session>, threads: Option<usize>) -> Result<Self> {
         let pool = Pool::new(threads, Priority::Background)?;
-        let make = move |scene: &Scene, progress: Progress| {
+        let place = move |scene: &Scene, progress: Progress| {
             pool.install(|| prepare::probes(scene, progress))
         };
-        Self::with_maker(session, make)
+        Self::with(session, place)
     }
 
-    fn with_maker(
+    /// A placer that places probes by `place`.
+    fn with(
         session: Arc<Session>,
-        make: impl Fn(&Scene, Progress) -> Result<Option<Probes>> + Send + Sync + 'static,
+        place: impl Fn(&Scene, Progress) -> Result<Option<Probes>> + Send + Sync + 'static,
     ) -> Result<Self> {
-        let desk = Mutex::default();
-        let shared = Arc::new(Shared { desk, bell: Condvar::new(), generation: AtomicU64::new(0) });
+        let shared = Arc::new(Shared {
+            state: Mutex::default(),
+            requests: Mailbox::default(),
+            generation: AtomicU64::new(0),
+        });
         let (worker, renders) = (shared.clone(), session.clone());
         let thread = std::thread::Builder::new()
-            .name("prober".to_owned())
-            .spawn(move || work(&worker, &renders, &make))
-            .map_err(|error| Error::io("the prober thread", error))?;
+            .name("probe placer".to_owned())
+            .spawn(move || work(&worker, &renders, &place))
+            .map_err(|error| Error::io("the thread that places probes", error))?;
         Ok(Self { session, shared, thread: Some(thread) })
     }
 
@@ -73,33 +83,36 @@ impl ProbePlacer {
     /// there is any. The latest wins: of an earlier start they are placed no further, unless this
     /// one has the same.
     pub fn start(&self, built: &BuiltScene, start: RenderStart, resume: Option<Resume>) {
-        let mut desk = self.shared.desk();
-        let known = desk.known(built);
+        let mut state = self.shared.state();
+        let known = state.known(built);
         let provisional = known.is_none();
         let request = request(built, start, known.flatten(), provisional);
         self.session.start(Request { resume, ..request });
-        let goes_on = provisional && desk.waiting.as_ref().is_some_and(|(b, _)| same(b, built));
-        if !goes_on {
-            self.shared.generation.fetch_add(1, Ordering::Relaxed);
-        }
+        let goes_on = provisional && state.waiting.as_ref().is_some_and(|(b, _)| same(b, built));
         // Only now, so that the render is there to be improved.
-        desk.waiting = provisional.then(|| (built.clone(), start));
-        self.shared.bell.notify_one();
+        state.waiting = provisional.then(|| (built.clone(), start));
+        if goes_on {
+            return;
+        }
+        let generation = self.shared.generation.fetch_add(1, Ordering::Relaxed) + 1;
+        match provisional {
+            true => self.shared.requests.post(PlaceRequest { built: built.clone(), generation }),
+            false => self.shared.requests.clear(),
+        }
     }
 
     /// The probes of `built`, if they are there.
     pub fn probes(&self, built: &BuiltScene) -> Option<Arc<Probes>> {
-        let desk = self.shared.desk();
-        let (source, probes) = desk.ready.as_ref()?;
+        let state = self.shared.state();
+        let (source, probes) = state.ready.as_ref()?;
         probes.clone().filter(|_| same(source, built))
     }
 }
 
 impl Drop for ProbePlacer {
     fn drop(&mut self) {
-        self.shared.desk().closed = true;
         self.shared.generation.fetch_add(1, Ordering::Relaxed);
-        self.shared.bell.notify_one();
+        self.shared.requests.stop();
         if let Some(thread) = self.thread.take() {
             // A panic over there was reported there already.
             let _ = thread.join();
@@ -108,39 +121,30 @@ impl Drop for ProbePlacer {
 }
 
 impl Shared {
-    /// The desk, also after a panic of the other side: it is sound after every statement.
-    fn desk(&self) -> MutexGuard<'_, Desk> {
-        self.desk.lock().unwrap_or_else(PoisonError::into_inner)
+    /// The state, also after a panic of the other side: it is sound after every statement.
+    fn state(&self) -> MutexGuard<'_, PlacerState> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Waits for a render that awaits its probes, with the edition that they belong to; `None` when
-    /// the prober is dropped.
-    fn next(&self) -> Option<(BuiltScene, u64)> {
-        let idle = |desk: &mut Desk| !desk.closed && desk.waiting.is_none();
-        let desk = self.bell.wait_while(self.desk(), idle);
-        let desk = desk.unwrap_or_else(PoisonError::into_inner);
-        let (built, _) = desk.waiting.as_ref().filter(|_| !desk.closed)?;
-        Some((built.clone(), self.generation.load(Ordering::Relaxed)))
-    }
-
-    /// Puts down probes that are placed; the render that awaits them, if they are still wanted.
+    /// Keeps the probes that were placed, if they are still wanted; returns the render that awaits
+    /// them.
     fn take_in(
         &self,
         built: BuiltScene,
         generation: u64,
         probes: Option<&Arc<Probes>>,
     ) -> Option<(BuiltScene, RenderStart)> {
-        let mut desk = self.desk();
+        let mut state = self.state();
         if self.generation.load(Ordering::Relaxed) != generation {
             return None;
         }
-        desk.ready = Some((built, probes.cloned()));
-        desk.waiting.take()
+        state.ready = Some((built, probes.cloned()));
+        state.waiting.take()
     }
 }
 
-impl Desk {
-    /// What is known of the probes of `built`: `None` if they have to be placed first. Lets go of
+impl PlacerState {
+    /// The probes of `built` as far as known: `None` if they have to be placed first. Lets go of
     /// those that no strategy of the same scene could use.
     fn known(&mut self, built: &BuiltScene) -> Option<Option<Arc<Probes>>> {
         self.ready = self.ready.take().filter(|(source, _)| same_places(source, built));
@@ -154,13 +158,13 @@ impl Desk {
     }
 }
 
-fn work(shared: &Shared, session: &Session, make: &PlaceProbes) {
-    while let Some((built, generation)) = shared.next() {
+fn work(shared: &Shared, session: &Session, place: &PlaceProbes) {
+    while let Some(PlaceRequest { built, generation }) = shared.requests.take() {
         let go_on = |_: f32| shared.generation.load(Ordering::Relaxed) == generation;
         let scene = built.scene.clone();
         // Should it fail, the render goes on without; its thread has reported why. Probes that were
         // given up are not taken in.
-        let probes = catch_unwind(AssertUnwindSafe(|| make(&scene, &go_on)));
+        let probes = catch_unwind(AssertUnwindSafe(|| place(&scene, &go_on)));
         let probes = probes.ok().and_then(Result::ok).flatten().map(Arc::new);
         if let Some((built, start)) = shared.take_in(built, generation, probes.as_ref()) {
             let sampler = probes.map(|probes| sampler(&built, start, Some(probes)));

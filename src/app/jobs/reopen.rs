@@ -12,9 +12,9 @@ use crate::scene::{self, Settings};
 
 /// How the render of a reopened snapshot goes on.
 pub struct Reopened {
-    /// What it goes on from; none where it is rendered anew.
+    /// The samples that it goes on from; none where it is rendered anew.
     pub resume: Option<Resume>,
-    /// The same in words, to be put behind its name.
+    /// How it goes on in words, to be put behind its name.
     pub notice: Notice,
 }
 

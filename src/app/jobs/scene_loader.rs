@@ -2,22 +2,17 @@
 //! window. The latest request wins: a new one cancels the one at work, and only its outcome is
 //! reported.
 
-use std::collections::HashMap;
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError, mpsc};
+use std::sync::{Arc, mpsc};
 
-use glam::UVec2;
-
+use super::built::{BuiltScene, Grids, RenderStart};
+use super::mailbox::Mailbox;
 use super::probe_placer::ProbePlacer;
 use super::reopen::{self, Reopened};
 use crate::error::{Error, Progress, Result};
-use crate::scene::{self, GridDescription, Note, Overrides, Settings, VolumeCache};
-use crate::transport::Scene;
+use crate::scene::{self, Overrides, Settings, VolumeCache};
 
-/// The grids of volume files by the file's name.
-pub type Grids = HashMap<String, Vec<GridDescription>>;
-
-/// What the loader is asked to do.
+/// A job of the loader.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LoadJob {
     /// Read a scene, a volume or a snapshot (a path or `builtin:NAME`) and build it.
@@ -26,7 +21,7 @@ pub enum LoadJob {
     Build(Settings),
 }
 
-/// What the loader has to say.
+/// A report of the loader.
 pub enum LoadReport {
     /// A job has ended.
     Ended(Box<LoadOutcome>),
@@ -34,16 +29,7 @@ pub enum LoadReport {
     Grids(Arc<Grids>),
 }
 
-/// A render to start as soon as a job is done.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct RenderStart {
-    /// Width and height of the film in pixels.
-    pub size: UVec2,
-    /// The number of the render.
-    pub generation: u64,
-}
-
-/// What came of a job.
+/// The outcome of a job.
 pub struct LoadOutcome {
     /// The number of the request, as [`Loader::request`] gave it.
     pub number: u64,
@@ -57,17 +43,6 @@ pub struct LoadOutcome {
     pub reopened: Option<Reopened>,
 }
 
-/// A built scene and the settings that it was built from.
-#[derive(Clone)]
-pub struct BuiltScene {
-    /// What it was built from.
-    pub settings: Settings,
-    /// What was guessed for a bare volume.
-    pub notes: Vec<Note>,
-    /// Ready to sample.
-    pub scene: Arc<Scene>,
-}
-
 /// The handle of the thread. Dropping it cancels and ends the thread.
 pub struct Loader {
     shared: Arc<Shared>,
@@ -76,31 +51,23 @@ pub struct Loader {
 }
 
 struct Shared {
-    desk: Mutex<Desk>,
-    wake: Condvar,
+    requests: Mailbox<LoadRequest>,
     /// Counts the requests; work for an older one is cancelled.
     latest: AtomicU64,
     /// Percents done of the present job.
     percent: AtomicU32,
 }
 
-/// A request.
-struct Ticket {
+/// A job with its number and the render that it starts.
+struct LoadRequest {
     number: u64,
     job: LoadJob,
     start: Option<RenderStart>,
 }
 
-#[derive(Default)]
-struct Desk {
-    next: Option<Ticket>,
-    busy: bool,
-    closed: bool,
-}
-
 impl Loader {
-    /// Starts the thread, which starts renders by `probe_placer` and keeps volumes in `cache`. `on_news` is called after each report
-    /// and as work proceeds.
+    /// Starts the thread, which starts renders by `probe_placer` and keeps volumes in `cache`.
+    /// `on_news` is called after each report and as work proceeds.
     ///
     /// # Errors
     /// When the system refuses to start a thread.
@@ -110,8 +77,7 @@ impl Loader {
         on_news: impl Fn() + Send + Sync + 'static,
     ) -> Result<Self> {
         let shared = Arc::new(Shared {
-            desk: Mutex::default(),
-            wake: Condvar::new(),
+            requests: Mailbox::default(),
             latest: AtomicU64::new(0),
             percent: AtomicU32::new(0),
         });
@@ -128,15 +94,14 @@ impl Loader {
     /// number of the request.
     pub fn request(&self, job: LoadJob, start: Option<RenderStart>) -> u64 {
         let number = self.shared.latest.fetch_add(1, Ordering::Relaxed) + 1;
-        self.shared.desk().next = Some(Ticket { number, job, start });
-        self.shared.wake.notify_all();
+        self.shared.requests.post(LoadRequest { number, job, start });
         number
     }
 
     /// Cancels what is at work or waiting.
     pub fn cancel(&self) {
         self.shared.latest.fetch_add(1, Ordering::Relaxed);
-        self.shared.desk().next = None;
+        self.shared.requests.clear();
     }
 
     /// The next report, if there is one.
@@ -146,44 +111,18 @@ impl Loader {
 
     /// The fraction done of the job at work, in 0..=1; `None` while idle.
     pub fn progress(&self) -> Option<f32> {
-        let desk = self.shared.desk();
-        let busy = desk.busy || desk.next.is_some();
-        busy.then(|| self.shared.percent.load(Ordering::Relaxed) as f32 / 100.0)
+        let is_busy = self.shared.requests.is_busy();
+        is_busy.then(|| self.shared.percent.load(Ordering::Relaxed) as f32 / 100.0)
     }
 }
 
 impl Drop for Loader {
     fn drop(&mut self) {
         self.cancel();
-        self.shared.desk().closed = true;
-        self.shared.wake.notify_all();
+        self.shared.requests.stop();
         if let Some(thread) = self.thread.take() {
             // A panic over there was reported there already.
             let _ = thread.join();
-        }
-    }
-}
-
-impl Shared {
-    /// The desk, also after a panic of the other side: it is sound after every statement.
-    fn desk(&self) -> MutexGuard<'_, Desk> {
-        self.desk.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// Waits for the next job; `None` when the loader is dropped.
-    fn next(&self) -> Option<Ticket> {
-        let mut desk = self.desk();
-        desk.busy = false;
-        loop {
-            if desk.closed {
-                return None;
-            }
-            if let Some(next) = desk.next.take() {
-                desk.busy = true;
-                self.percent.store(0, Ordering::Relaxed);
-                return Some(next);
-            }
-            desk = self.wake.wait(desk).unwrap_or_else(PoisonError::into_inner);
         }
     }
 }
@@ -196,7 +135,8 @@ fn work(
     on_news: &(dyn Fn() + Sync),
 ) {
     let mut grids = Grids::new();
-    while let Some(Ticket { number, job, start }) = shared.next() {
+    while let Some(LoadRequest { number, job, start }) = shared.requests.take() {
+        shared.percent.store(0, Ordering::Relaxed);
         let is_latest = || shared.latest.load(Ordering::Relaxed) == number;
         let progress = |fraction: f32| {
             let percent = (100.0 * fraction) as u32;
@@ -210,7 +150,7 @@ fn work(
             on_news();
             continue;
         }
-        shared.desk().busy = false;
+        shared.requests.finish();
         let (result, reopened) = match result {
             Ok((built, reopened)) => (Ok(built), reopened),
             Err(error) => (Err(error), None),

@@ -101,7 +101,7 @@ struct Whole<'a> {
     /// What 0 means in words.
     none: Option<&'a str>,
     unit: &'a str,
-    /// What a double click goes back to.
+    /// The value that a double click goes back to.
     reset: u64,
 }
 

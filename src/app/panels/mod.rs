@@ -1,4 +1,9 @@
-//! The panels, one file each.
+//! Panels of settings in a column, one file each.
+//!
+//! - `column`: the column that they stand in.
+//! - `strategy`, `advanced`: toggles and presets, and what is behind them.
+//! - `volume`, `grids`, `emission`, `ramp`, `placement`: a volume, its grids, glow and place.
+//! - `lights`, `surfaces`, `camera`, `film`, `display`: the rest of the scene and of the view.
 
 pub mod advanced;
 pub mod camera;
@@ -14,27 +19,26 @@ pub mod strategy;
 pub mod surfaces;
 pub mod volume;
 
-use egui::{RichText, Ui};
-
 pub use super::ui::sections::{folded_section, section};
+pub use super::ui::widgets::explain;
 
 use super::command::Command;
+use super::compare::panel::ComparePanel;
 use super::compare::reference::MeasuredReference;
 use super::compare::second_side::SecondSide;
 use super::diagnostics::Wanted;
 use super::document::Editor;
-use super::jobs::scene_loader::Grids;
-use super::ui::theme::color;
+use super::jobs::built::Grids;
 use crate::math::Aabb;
 use crate::scene::Note;
 
-/// What a panel may read and change.
+/// The state that a panel may read and change.
 pub struct Panel<'a> {
     /// The document and its record of edits.
     pub editor: &'a mut Editor,
     /// The grids of all files seen so far.
     pub grids: &'a Grids,
-    /// What was guessed when a bare volume was opened.
+    /// The guesses made when a bare volume was opened.
     pub notes: &'a [Note],
     /// The box around all that fills space, or around the camera's target where nothing does.
     pub bounds: Aabb,
@@ -44,21 +48,22 @@ pub struct Panel<'a> {
     pub guided_flights: Option<f32>,
     /// The other side of a comparison.
     pub second_side: &'a SecondSide,
-    /// How many sides take turns at the machine.
-    pub turns: usize,
     /// The reference and the errors against it.
     pub reference: &'a mut MeasuredReference,
-    /// What is shown to understand the render.
+    /// The diagnostics that are shown.
     pub wanted: &'a mut Wanted,
-    /// Files that were open before, the last one first.
-    pub recent: &'a [String],
-    /// The one of them that a menu asks for.
-    pub reopened: &'a mut Option<String>,
     /// Commands that buttons ask for.
     pub commands: &'a mut Vec<Command>,
 }
 
-/// Small dim text that explains.
-pub fn explain(ui: &mut Ui, text: &str) {
-    ui.add(egui::Label::new(RichText::new(text).small().color(color::TEXT_DIM)).wrap());
+impl Panel<'_> {
+    /// The part of it that the panel of a comparison shows.
+    pub fn compare(&mut self) -> ComparePanel<'_> {
+        ComparePanel {
+            editor: self.editor,
+            second_side: self.second_side,
+            reference: self.reference,
+            commands: self.commands,
+        }
+    }
 }

@@ -15,7 +15,7 @@ use crate::transport::toggle::Toggle;
 /// Shows the section.
 pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
     section(ui, "Strategy", |ui| {
-        panel::sides(ui, panel);
+        panel::sides(ui, &mut panel.compare());
         mark(ui, "toggles");
         presets(ui, panel);
         if panel.editor.document.settings.strategy.is_biased() {

@@ -3,6 +3,7 @@
 //! pictures are coded before their upload.
 
 mod canvas;
+mod gpu;
 mod pipelines;
 
 use std::borrow::Cow;
@@ -12,13 +13,15 @@ use std::sync::Arc;
 use egui_wgpu::{CallbackResources, CallbackTrait, RenderState, ScreenDescriptor};
 use glam::{UVec2, Vec2};
 
+use super::look::{Look, TextureData};
 use super::zoom::Placement;
-use crate::app::diagnostics::{STOPS, Scale, stops};
 use crate::app::ui::theme::color;
+use crate::image::ramp::{STOPS, Scale, stops};
 use crate::image::tone::{Channel, Tone, false_color};
 use crate::math::Rgb;
 use crate::render::Picture;
 use canvas::{GpuCanvas, PixelRect};
+use gpu::{bind, texture};
 use pipelines::{Pipelines, Variant};
 
 /// `ViewUniform` of the shader.
@@ -39,59 +42,12 @@ struct ViewUniform {
 /// Pictures that can be shown at once.
 pub const PANES: usize = 2;
 
-/// What of a picture is shown.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Look {
-    /// Its light, exposed and curved.
-    Picture(Tone),
-    /// A layer of light in its place.
-    Light(Tone),
-    /// A layer of numbers, on this scale.
-    Numbers(Scale),
-}
-
-/// Which data of a picture is on the graphics card.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum TextureData {
-    Pixels,
-    Light,
-    Numbers,
-}
-
-impl Look {
-    fn source(self) -> TextureData {
-        match self {
-            Self::Picture(_) => TextureData::Pixels,
-            Self::Light(_) => TextureData::Light,
-            Self::Numbers(_) => TextureData::Numbers,
-        }
-    }
-}
-
-impl TextureData {
-    /// Floats of a pixel on the graphics card.
-    fn format(self) -> wgpu::TextureFormat {
-        match self {
-            Self::Pixels | Self::Light => wgpu::TextureFormat::Rgba32Float,
-            Self::Numbers => wgpu::TextureFormat::R32Float,
-        }
-    }
-
-    fn light(self, picture: &Picture) -> &[[f32; 4]] {
-        match self {
-            Self::Pixels => &picture.pixels,
-            Self::Light => &picture.layer.light,
-            Self::Numbers => &[],
-        }
-    }
-}
-
-/// What of a picture is on the graphics card, and how.
+/// The data of a picture on the graphics card, and its coding.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Upload {
     source: TextureData,
-    /// As what its light is shown, if that is settled here: of a coarse picture this is worked out
-    /// for its few texels, not for every pixel of the window.
+    /// The tone that its light is coded with, if that is done here: of a coarse picture this is worked
+    /// out for its few texels, not for every pixel of the window.
     coded: Option<Tone>,
 }
 
@@ -114,7 +70,7 @@ impl Upload {
     }
 }
 
-/// Of the `values` of all pixels, one a block.
+/// One of the `values` of all pixels for each block.
 fn blocks<'a, T: bytemuck::NoUninit>(picture: &Picture, values: &'a [T]) -> Cow<'a, [u8]> {
     if picture.block_log2 == 0 {
         return Cow::Borrowed(bytemuck::cast_slice(values));
@@ -129,7 +85,7 @@ fn corners<'a, T>(picture: &Picture, values: &'a [T]) -> impl Iterator<Item = &'
     lines.flat_map(move |line| line.iter().step_by(side))
 }
 
-/// What the draw call needs on the graphics card; lives among egui's callback resources.
+/// The resources of the draw call on the graphics card; lives among egui's callback resources.
 struct Display {
     pipelines: Pipelines,
     layout: wgpu::BindGroupLayout,
@@ -141,11 +97,11 @@ struct GpuPane {
     view: wgpu::Buffer,
     shown: Option<UploadedPicture>,
     canvas: Option<GpuCanvas>,
-    /// What is drawn on the canvas, if anything.
+    /// The state drawn on the canvas, if anything is.
     drawn: Option<DrawnState>,
 }
 
-/// What is drawn on a canvas.
+/// The state drawn on a canvas.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct DrawnState {
     view: ViewUniform,
@@ -177,7 +133,7 @@ pub fn largest_size(state: &RenderState) -> u32 {
 pub struct Shot {
     /// The picture.
     pub picture: Arc<Picture>,
-    /// What of it.
+    /// The data of it that is shown, and how.
     pub look: Look,
     /// Where it lies, from the corner of `area`.
     pub placement: Placement,
@@ -391,45 +347,6 @@ impl GpuPane {
         let bindings = bind(device, layout, &self.view, &view);
         (texture, bindings)
     }
-}
-
-/// A texture that shaders read, and that has another use too.
-fn texture(
-    device: &wgpu::Device,
-    label: &str,
-    (size, format): (UVec2, wgpu::TextureFormat),
-    usage: wgpu::TextureUsages,
-) -> wgpu::Texture {
-    device.create_texture(&wgpu::TextureDescriptor {
-        label: Some(label),
-        size: wgpu::Extent3d { width: size.x, height: size.y, depth_or_array_layers: 1 },
-        mip_level_count: 1,
-        sample_count: 1,
-        dimension: wgpu::TextureDimension::D2,
-        format,
-        usage: wgpu::TextureUsages::TEXTURE_BINDING | usage,
-        view_formats: &[],
-    })
-}
-
-/// Binds how a texture is looked at, and the texture.
-fn bind(
-    device: &wgpu::Device,
-    layout: &wgpu::BindGroupLayout,
-    view: &wgpu::Buffer,
-    texture: &wgpu::TextureView,
-) -> wgpu::BindGroup {
-    device.create_bind_group(&wgpu::BindGroupDescriptor {
-        label: Some("display"),
-        layout,
-        entries: &[
-            wgpu::BindGroupEntry { binding: 0, resource: view.as_entire_binding() },
-            wgpu::BindGroupEntry {
-                binding: 1,
-                resource: wgpu::BindingResource::TextureView(texture),
-            },
-        ],
-    })
 }
 
 fn bind_group_layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {

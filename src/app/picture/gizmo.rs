@@ -8,7 +8,7 @@ mod lens;
 use egui::{Color32, CursorIcon, Pos2, Rect, Response, Sense, Stroke, Ui, vec2};
 use glam::Vec3A;
 
-use super::viewport::View;
+use super::view::View;
 use crate::app::document::Editor;
 use crate::app::ui::theme::color;
 use crate::app::ui::widgets::arrow_steps;

@@ -3,10 +3,11 @@
 use egui::{Align2, Color32, FontId, Painter, Rect, vec2};
 use glam::{UVec2, Vec2};
 
-use super::display::Look;
+use super::look::Look;
+use super::ramp_color;
 use super::zoom::Placement;
-use crate::app::diagnostics::{Scale, ramp_color};
 use crate::app::ui::theme::{color, size};
+use crate::image::ramp::Scale;
 use crate::image::tone::{Encoder, linear_from_srgb};
 use crate::math::{Rgb, luminance};
 use crate::render::Picture;
@@ -46,7 +47,7 @@ pub fn paint(
     }
 }
 
-/// What is written into a pixel, line by line.
+/// The text written into a pixel, line by line.
 fn lines(picture: &Picture, look: Look, pixel: UVec2) -> Vec<String> {
     let index = pixel.y as usize * picture.size.x as usize + pixel.x as usize;
     let light = match look {
@@ -104,7 +105,7 @@ impl Ink {
             }
             Self::Number(scale) => {
                 let number = picture.layer.numbers.get(index).copied().unwrap_or(0.0);
-                let [r, g, b, _] = ramp_color(scale.place(number)).to_array();
+                let [r, g, b, _] = ramp_color::color(scale.place(number)).to_array();
                 [r, g, b]
             }
         };
@@ -128,7 +129,6 @@ fn write(painter: &Painter, middle: egui::Pos2, lines: &[String], ink: Color32) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::diagnostics::Scale;
     use crate::image::tone::Tone;
     use crate::render::LayerMap;
 

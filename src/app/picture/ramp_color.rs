@@ -3,7 +3,6 @@
 use egui::Color32;
 
 use crate::app::ui::theme;
-pub use crate::image::ramp::{STOPS, Scale, stops};
 
 /// The color at a place in 0..=1 of the ramp.
 pub fn color(place: f32) -> Color32 {

@@ -1,18 +1,18 @@
-//! A rectangle on the picture that figures are told of: drawn by hand, or typed.
+//! A rectangular region of the picture that figures are told of: drawn by hand, or typed.
 
 use egui::{CursorIcon, PointerButton, Rect, Response, Stroke, StrokeKind, Ui};
 use glam::{UVec2, Vec2};
 
-use super::viewport::View;
+use super::view::View;
 use crate::app::ui::theme::color;
 use crate::render::Area;
 
-/// The rectangle and the hand that draws it. No edit of the scene, so that undo leaves it alone.
+/// The region and the hand that draws it. No edit of the scene, so that undo leaves it alone.
 #[derive(Debug, Default)]
 pub struct PictureRegion {
     /// Whether the next drag draws it.
     armed: bool,
-    /// What it covers of a picture of this size.
+    /// The area that it covers of a picture of this size.
     chosen: Option<(Area, UVec2)>,
     /// Whether it gets all samples, and the rest of the picture none.
     pub is_alone: bool,
@@ -51,7 +51,7 @@ impl PictureRegion {
         self.armed = false;
     }
 
-    /// What it covers of a picture of `size`: the same part of every picture.
+    /// The area that it covers of a picture of `size`: the same part of every picture.
     pub fn area(&self, size: UVec2) -> Option<Area> {
         let (area, of) = self.chosen?;
         if of == size {

@@ -6,10 +6,12 @@ use std::time::{Duration, Instant};
 use egui::{CursorIcon, Key, PointerButton, Rect, Response, Sense, Stroke, Ui};
 use glam::{UVec2, Vec2, Vec3};
 
-use super::display::{self, Look};
+use super::display;
+use super::look::Look;
 use super::navigation::Pose;
 use super::pixel_values;
 use super::region::PictureRegion;
+use super::view::{View, from_egui};
 use super::zoom::{Placement, Zoom};
 use crate::app::document::Editor;
 use crate::app::ui::theme::color;
@@ -40,7 +42,7 @@ pub struct Probe {
     pub number: Option<(f32, Option<Layer>)>,
 }
 
-/// What the viewport shows.
+/// The pictures that the viewport shows.
 #[derive(Clone, Debug)]
 pub enum Shown {
     /// No picture yet.
@@ -57,9 +59,9 @@ pub enum Shown {
 struct ViewportPane<'p> {
     picture: &'p Arc<Picture>,
     look: Look,
-    /// What the picture is laid out in.
+    /// The area that the picture is laid out in.
     area: Rect,
-    /// What is seen of that.
+    /// The part of that area that is seen.
     clip: Rect,
 }
 
@@ -98,42 +100,12 @@ impl Shown {
     }
 }
 
-/// Where the picture lies in the window.
-#[derive(Clone, Copy, Debug)]
-pub struct View {
-    /// The viewport, in points.
-    pub rect: Rect,
-    /// How the picture lies in it, in framebuffer pixels.
-    pub placement: Placement,
-    /// Framebuffer pixels per point.
-    pub factor: f32,
-    /// Width and height of the picture.
-    pub size: UVec2,
-    /// Whether the pointer is on it, and nothing in front.
-    pub hovered: bool,
-    /// The pixel that was clicked in this frame.
-    pub clicked: Option<UVec2>,
-}
-
-impl View {
-    /// The picture position, in its pixels, under a place in the window.
-    pub fn picture_at(&self, at: egui::Pos2) -> Vec2 {
-        self.placement.picture_from_viewport(from_egui(at - self.rect.min) * self.factor)
-    }
-
-    /// Where a picture position, in its pixels, lies in the window.
-    pub fn window_at(&self, at: Vec2) -> egui::Pos2 {
-        let at = (self.placement.corner + at * self.placement.scale) / self.factor;
-        self.rect.min + egui::vec2(at.x, at.y)
-    }
-}
-
 /// The state of the viewport between frames.
 #[derive(Debug, Default)]
 pub struct Viewport {
     /// How the picture is laid out.
     pub zoom: Zoom,
-    /// What is under the pointer.
+    /// The pixel under the pointer and its value.
     pub probe: Option<Probe>,
     /// Whether the keyboard is to go to the picture.
     pub wants_keyboard: bool,
@@ -185,7 +157,7 @@ impl Viewport {
     }
 
     /// Shows what there is in the rest of `ui` and lets the hand move camera and zoom, or draw the
-    /// rectangle. Gives where the pictures lie, those of a wipe as one.
+    /// region. Gives where the pictures lie, those of a wipe as one.
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -340,10 +312,6 @@ fn steer(ui: &Ui, response: &Response, editor: &mut Editor) {
     };
     set_pose(camera, moved);
     editor.name_edit(name);
-}
-
-fn from_egui(vector: egui::Vec2) -> Vec2 {
-    Vec2::new(vector.x, vector.y)
 }
 
 /// Where the camera of these settings stands.

@@ -26,14 +26,14 @@ pub fn drop_hint(ui: &mut Ui, name: &str) {
     ui.label(RichText::new(format!("Drop to open {name}")).color(color::ACCENT));
 }
 
-/// What becomes of a dropped picture.
+/// The use of a dropped picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dropped {
-    /// It is opened.
+    /// The picture is opened as a snapshot.
     Open,
-    /// It becomes the reference.
+    /// The picture becomes the reference.
     Reference,
-    /// Nothing.
+    /// The picture is ignored.
     Cancelled,
 }
 
@@ -63,24 +63,24 @@ pub fn dropped(ui: &mut Ui, name: &str) -> Option<Dropped> {
 /// A path being typed.
 #[derive(Debug)]
 pub struct PathBar {
-    /// What for.
+    /// The purpose of the path.
     pub purpose: Purpose,
-    /// What is typed so far.
+    /// The text typed so far.
     pub text: String,
-    /// What a file is called of which only the folder is typed.
+    /// The name of a file of which only the folder is typed.
     name: PathBuf,
     fresh: bool,
     /// Whether the user was told that the file exists and will be replaced.
     warned: bool,
 }
 
-/// What became of a path being typed.
+/// The state of a path being typed.
 pub enum Typed {
-    /// It is still being typed.
+    /// The path is still being typed.
     Pending,
-    /// It is complete.
+    /// The path is complete.
     Done(String),
-    /// It is not wanted any more.
+    /// The path is not wanted any more.
     Cancelled,
 }
 

@@ -3,7 +3,7 @@
 use egui::Context;
 use glam::UVec2;
 
-use super::App;
+use super::app::App;
 use crate::app::command::Command;
 use crate::app::document::Side;
 use crate::app::jobs::dialogs::Purpose;
@@ -35,15 +35,15 @@ impl App {
             Command::NextToneCurve => self.next_tone_curve(),
             Command::FalseColor => self.toggle_false_color(),
             Command::GoToPicture => self.viewport.wants_keyboard = true,
-            Command::FoldPanels => self.folded = !self.folded,
-            Command::FullScreen => self.set_full_screen(ctx, !self.full_screen),
+            Command::FoldPanels => self.chrome.folded = !self.chrome.folded,
+            Command::FullScreen => self.chrome.set_full_screen(ctx, !self.chrome.full_screen),
             Command::Larger => egui::gui_zoom::zoom_in(ctx),
             Command::Smaller => egui::gui_zoom::zoom_out(ctx),
             Command::NormalSize => ctx.set_zoom_factor(1.0),
             Command::ResetWindow => self.reset_window(ctx),
-            Command::Palette => toggle_open(&mut self.palette),
-            Command::Start => toggle_open(&mut self.start),
-            Command::Shortcuts => self.help = !self.help,
+            Command::Palette => toggle_open(&mut self.chrome.palette),
+            Command::Start => toggle_open(&mut self.chrome.start),
+            Command::Shortcuts => self.chrome.help = !self.chrome.help,
             Command::Compare => self.compare_or_end(),
             Command::SwitchSide => self.switch_side(),
             Command::SwapSides => self.swap_sides(),
@@ -52,11 +52,11 @@ impl App {
             Command::CompareAsA => self.set_against_live(Side::A),
             Command::CompareAsB => self.set_against_live(Side::B),
             Command::SaveComparison => self.ask_to_save_comparison(ctx),
-            Command::Rectangle => self.region.arm(),
+            Command::Rectangle => self.compare.region.arm(),
             Command::SamplesHere => self.give_region_all_samples(),
             Command::LoadReference => self.ask(ctx, Purpose::Reference),
             Command::PictureAsReference => self.take_picture(ctx),
-            Command::RemoveReference => self.reference.remove(),
+            Command::RemoveReference => self.compare.reference.remove(),
             Command::Sweep => self.sweep.ask(&self.editor.document.settings),
             Command::KeepSnapshot => self.snapshots.wants_keep = true,
             Command::PreviousSnapshot => self.snapshots.strip.show_previous(),
@@ -73,7 +73,7 @@ impl App {
     /// Discards the samples of every side.
     fn restart(&mut self) {
         self.engine.restart();
-        self.second_side.restart();
+        self.compare.second_side.restart();
     }
 
     /// Switches a toggle of the edited strategy.
@@ -109,12 +109,6 @@ impl App {
         self.editor.name_edit("false color");
     }
 
-    /// Gives the picture the whole screen, or menus and panels their place again.
-    pub(super) fn set_full_screen(&mut self, ctx: &Context, full: bool) {
-        self.full_screen = full;
-        ctx.send_viewport_cmd(egui::ViewportCommand::Fullscreen(full));
-    }
-
     /// Closes what is open in front, unless the key closes a popup already.
     fn close_front(&mut self, ctx: &Context) {
         if !ctx.any_popup_open() {
@@ -124,33 +118,33 @@ impl App {
 
     /// Closes or takes back what is there beside the live picture, the front one first.
     fn leave(&mut self, ctx: &Context) {
-        if self.help {
-            self.help = false;
-        } else if self.unsaved.losing.is_some() {
+        if self.chrome.help {
+            self.chrome.help = false;
+        } else if self.unsaved.pending.is_some() {
             self.stay();
         } else if self.sweep.open && self.sweep.results().is_some() {
             self.sweep.open = false;
-        } else if self.region.is_armed() {
-            self.region.remove();
-        } else if self.full_screen {
-            self.set_full_screen(ctx, false);
+        } else if self.compare.region.is_armed() {
+            self.compare.region.remove();
+        } else if self.chrome.full_screen {
+            self.chrome.set_full_screen(ctx, false);
         } else if self.snapshots.strip.shown().is_some() {
             self.snapshots.strip.show(None);
-        } else if !self.region.remove() && self.gizmo.selected.take().is_none() {
-            self.start = None;
+        } else if !self.compare.region.remove() && self.gizmo.selected.take().is_none() {
+            self.chrome.start = None;
         }
     }
 
-    /// Brings what is remembered of the window and the display back to the first start, and what
+    /// Brings the preferences of the window and the display back to the first start, and what
     /// hides parts of it.
     fn reset_window(&mut self, ctx: &Context) {
         ctx.set_zoom_factor(1.0);
-        self.set_full_screen(ctx, false);
-        self.folded = false;
-        self.sections.reset();
+        self.chrome.set_full_screen(ctx, false);
+        self.chrome.folded = false;
+        self.chrome.sections.reset();
         self.preferences.start = true;
         self.viewport.zoom = Default::default();
-        self.second_side.layout = Default::default();
+        self.compare.second_side.layout = Default::default();
         self.editor.document.tone = Default::default();
         self.editor.name_edit("display");
     }

@@ -1,4 +1,4 @@
-//! The view as it is, with names, legend and figures, to be written to a file.
+//! The view on the screen with names, legend and figures, to be written to a file.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -7,7 +7,7 @@ use glam::UVec2;
 use rayon::prelude::*;
 
 use crate::app::diagnostics::Legend;
-use crate::app::picture::display::Look;
+use crate::app::picture::look::Look;
 use crate::app::picture::viewport::Shown;
 use crate::app::ui::widgets::significant;
 use crate::error::{Error, Result};
@@ -24,11 +24,11 @@ use crate::render::Picture;
 pub struct SavedView {
     /// The pictures, as the viewport shows them.
     pub shown: Shown,
-    /// What they are called, from left to right.
+    /// Their names, from left to right.
     pub names: Vec<String>,
-    /// What the colors of a map mean.
+    /// The legend of a map.
     pub legend: Option<Legend>,
-    /// The rectangle.
+    /// The region that figures are told of.
     pub area: Option<Area>,
     /// Sentences below.
     pub words: Vec<String>,
@@ -93,7 +93,7 @@ impl SavedView {
     }
 }
 
-/// What the screen shows of a picture, as 8-bit sRGB.
+/// The pixels of a picture as the screen shows them, as 8-bit sRGB.
 fn codes(picture: &Picture, look: Look) -> Vec<[u8; 3]> {
     match look {
         Look::Picture(tone) => light_codes(&picture.pixels, tone),

@@ -1,4 +1,4 @@
-//! What the window itself costs, for diagnosis: with the environment variable
+//! The cost of the window itself, for diagnosis: with the environment variable
 //! `FLAMBEAU_FRAME_STATS` set to a file name, the figures are written there as JSON on exit.
 
 use std::path::PathBuf;

@@ -20,7 +20,7 @@ const MOUSE: [(&str, &str); 12] = [
     ("Double-click a setting", "Reset it to the opened value"),
 ];
 
-/// What the page leaves of a small window, its own title included.
+/// Room that the page leaves around itself in a small window, its own title included.
 const MARGIN: Vec2 = egui::vec2(48.0, 96.0);
 /// Room that a column takes.
 const COLUMN: f32 = 330.0;

@@ -1,16 +1,20 @@
-//! What is where: bars, the panel column, the picture with what comes and goes at its edges.
+//! The layout: bars, the panel column, the picture with the rows that come and go at its edges.
 
 use std::path::PathBuf;
 
 use egui::{Context, Frame, Margin, Rect, Ui};
 use glam::UVec2;
 
-use super::App;
+use super::app::App;
+use super::menu::MenuItems;
+use super::status::StatusLine;
+use super::{help, menu, status};
 use crate::app::command::Command;
+use crate::app::compare::marks;
 use crate::app::diagnostics::show_legends;
 use crate::app::jobs::dialogs::typed;
 use crate::app::panels::{self, Panel};
-use crate::app::picture::display::Look;
+use crate::app::picture::look::Look;
 use crate::app::picture::viewport::Shown;
 use crate::app::shell::bars;
 use crate::app::shell::bars::{Dropped, Typed};
@@ -18,67 +22,78 @@ use crate::app::shell::palette;
 use crate::app::shell::preferences::Preferences;
 use crate::app::shell::start::StartChoice;
 use crate::app::ui::theme;
-use crate::app::ui::theme::{color, space};
+use crate::app::ui::theme::space;
 use crate::render::Picture;
 
 impl App {
     /// Shows everything and gathers the commands that it is asked for.
     pub(super) fn layout(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
-        let mark = if self.has_unsaved_changes() { "* " } else { "" };
-        let title = format!("{mark}{}", self.title());
-        let plain = self.panel_frame();
-        let grids = self.engine.grids().clone();
-        let edited = self.second_side.edited(&self.engine);
+        let title = self.marked_title();
+        let plain = self.chrome.panel_frame();
         let mut reopened = None;
-        let bounds = self.subject_bounds();
-        let mut panel = Panel {
-            editor: &mut self.editor,
-            grids: &grids,
-            notes: &self.notes,
-            bounds,
-            selected_light: &mut self.gizmo.selected,
-            guided_flights: edited.picture().and_then(|picture| picture.stats.guided_flights),
-            second_side: &self.second_side,
-            turns: self.second_side.turns(&self.engine),
-            reference: &mut self.reference,
-            wanted: &mut self.diagnostics.wanted,
-            recent: &self.preferences.recent,
-            reopened: &mut reopened,
-            commands,
-        };
-        if !self.full_screen {
-            let bar = plain.inner_margin(Margin::symmetric(8, 3));
-            egui::Panel::top("menu").frame(bar).show(ui, |ui| {
-                crate::app::shell::menu::show(ui, &mut panel, &title);
-            });
-            let bar = plain.inner_margin(Margin::symmetric(8, 0));
-            egui::Panel::bottom("status").exact_size(space::STATUS).frame(bar).show(ui, |ui| {
-                crate::app::shell::status::show(
-                    ui,
-                    &mut panel,
-                    edited,
-                    &self.viewport,
-                    &self.snapshots,
-                );
-            });
+        if !self.chrome.full_screen {
+            self.menu_and_status(ui, (plain, &title), &mut reopened, commands);
         }
-        if !self.folded && !self.full_screen {
-            let film = self.viewport.film_size();
-            panels::column::show(ui, &mut panel, plain, (film, self.largest), &self.sections);
+        if !self.chrome.folded && !self.chrome.full_screen {
+            self.panel_column(ui, plain, commands);
         }
         let area = egui::CentralPanel::no_frame().show(ui, |ui| self.picture_area(ui)).inner;
-        crate::app::shell::help::show(ui.ctx(), &mut self.help);
+        help::show(ui.ctx(), &mut self.chrome.help);
         self.palette_window(ui, commands);
         if let Some(path) = reopened {
-            self.open_unless_lost(&path);
+            self.open_or_ask(&path);
         }
         self.sweep_window(ui.ctx(), area, commands);
     }
 
-    /// What fixed panels lie on. A window that is cleared to their color spares the painting,
-    /// which a software driver feels.
-    fn panel_frame(&self) -> Frame {
-        if self.cleared { Frame::new() } else { Frame::new().fill(color::PANEL) }
+    /// Shows the menu bar with the `title` and the status line, on `plain` ground.
+    fn menu_and_status(
+        &mut self,
+        ui: &mut Ui,
+        (plain, title): (Frame, &str),
+        reopened: &mut Option<String>,
+        commands: &mut Vec<Command>,
+    ) {
+        let (editor, recent) = (&self.editor, &self.preferences.recent);
+        let mut items = MenuItems { editor, recent, reopened, commands };
+        let bar = plain.inner_margin(Margin::symmetric(8, 3));
+        egui::Panel::top("menu").frame(bar).show(ui, |ui| menu::show(ui, &mut items, title));
+        let second_side = &self.compare.second_side;
+        let mut line = StatusLine {
+            editor: &mut self.editor,
+            engine: second_side.edited(&self.engine),
+            second_side,
+            turns: second_side.turns(&self.engine),
+            viewport: &self.viewport,
+            snapshots: &self.snapshots,
+            layer: self.diagnostics.wanted.layer,
+            commands,
+        };
+        let bar = plain.inner_margin(Margin::symmetric(8, 0));
+        let bar = egui::Panel::bottom("status").exact_size(space::STATUS).frame(bar);
+        bar.show(ui, |ui| status::show(ui, &mut line));
+    }
+
+    /// Shows the column of panels on `plain` ground.
+    fn panel_column(&mut self, ui: &mut Ui, plain: Frame, commands: &mut Vec<Command>) {
+        let edited = self.compare.second_side.edited(&self.engine);
+        let guided_flights = edited.picture().and_then(|picture| picture.stats.guided_flights);
+        let bounds = self.subject_bounds();
+        let mut panel = Panel {
+            editor: &mut self.editor,
+            grids: self.engine.grids(),
+            notes: &self.opened.notes,
+            bounds,
+            selected_light: &mut self.gizmo.selected,
+            guided_flights,
+            second_side: &self.compare.second_side,
+            reference: &mut self.compare.reference,
+            wanted: &mut self.diagnostics.wanted,
+            commands,
+        };
+        let film = self.viewport.film_size();
+        let sections = &self.chrome.sections;
+        panels::column::show(ui, &mut panel, plain, (film, self.largest), sections);
     }
 
     /// The picture with the bars that come and go at its edges. The film takes the whole area, so
@@ -89,7 +104,7 @@ impl App {
         if let Some(wait) = self.viewport.resize(area, self.largest) {
             ui.ctx().request_repaint_after(wait);
         }
-        if !self.full_screen {
+        if !self.chrome.full_screen {
             self.start_row(ui);
             self.strip_row(ui);
         }
@@ -99,7 +114,7 @@ impl App {
         self.progress_row(ui);
         self.unsaved_row(ui);
         self.sweep_row(ui);
-        if !self.full_screen {
+        if !self.chrome.full_screen {
             self.measure_rows(ui);
         }
         if !self.notices.list().is_empty() {
@@ -108,13 +123,14 @@ impl App {
                 .show(ui, |ui| self.notices.show(ui));
         }
         let shown = self.shown(ui.ctx());
-        let is_live = self.snapshots.picture().is_none() || self.versus.is_some();
-        let is_plain = self.map().is_none();
+        let is_live = self.snapshots.picture().is_none() || self.compare.versus.is_some();
+        let is_plain = self.compare.map().is_none();
         let legend = self.legend(&shown);
         egui::CentralPanel::no_frame()
             .show(ui, |ui| {
                 let rect = ui.available_rect_before_wrap();
-                let views = self.viewport.show(ui, &mut self.editor, &shown, &mut self.region);
+                let views =
+                    self.viewport.show(ui, &mut self.editor, &shown, &mut self.compare.region);
                 let first = views.first().copied();
                 // What is drawn over the picture is about the live one.
                 match (first, legend) {
@@ -124,15 +140,17 @@ impl App {
                     (Some(view), Some(legend)) => show_legends(ui, view.rect, &[legend]),
                     _ => {}
                 }
-                views.iter().for_each(|view| self.region.paint(ui, view));
+                views.iter().for_each(|view| self.compare.region.paint(ui, view));
                 if is_live {
-                    self.compare_marks(ui, rect);
+                    marks::show(ui, rect, &mut self.compare, &self.editor.document);
                 }
                 let clicked = first.is_some_and(|view| view.clicked.is_some());
-                if clicked && !self.diagnostics.wanted.ray && !self.region.remove() {
+                if clicked && !self.diagnostics.wanted.ray && !self.compare.region.remove() {
                     self.gizmo.selected = None;
                 }
-                if let Some(view) = first.filter(|_| is_live && is_plain && !self.full_screen) {
+                if let Some(view) =
+                    first.filter(|_| is_live && is_plain && !self.chrome.full_screen)
+                {
                     let pivot = self.subject_bounds().center();
                     self.gizmo.show(ui, view, &mut self.editor, pivot);
                 }
@@ -141,27 +159,29 @@ impl App {
             .inner
     }
 
-    /// What the picture area shows.
+    /// The pictures that the picture area shows.
     pub(super) fn shown(&self, ctx: &Context) -> Shown {
         let tone = self.editor.document.tone;
         let look = Look::Picture(tone);
-        let map = self.map();
-        if self.versus.is_none()
-            && let Some(stored) = self.snapshots.picture()
+        let map = self.compare.map();
+        if self.compare.versus.is_none()
+            && let Some(snapshot) = self.snapshots.picture()
         {
             return match map {
                 Some(map) => Shown::One(map.picture.clone(), map.look),
-                None => Shown::One(stored.clone(), look),
+                None => Shown::One(snapshot.clone(), look),
             };
         }
         let Some(picture) = self.engine.picture() else { return Shown::Nothing };
         let layer = |pictures: &[&Picture]| self.diagnostics.look(pictures, tone).unwrap_or(look);
-        let pictures = self.second_side.pictures(&self.engine);
-        if let Some((active, pictures)) = self.active_side().zip(pictures) {
+        let pictures = self.compare.second_side.pictures(&self.engine);
+        if let Some((active, pictures)) =
+            self.compare.active_side(&self.editor.document).zip(pictures)
+        {
             let look = layer(&pictures.each_ref().map(|picture| &**picture));
-            return self.second_side.shown(ctx, pictures, (look, active), map);
+            return self.compare.second_side.shown(ctx, pictures, (look, active), map);
         }
-        match map.filter(|_| !self.second_side.is_on()) {
+        match map.filter(|_| !self.compare.second_side.is_on()) {
             Some(map) => Shown::One(map.picture.clone(), map.look),
             None => Shown::One(picture.clone(), layer(&[picture])),
         }
@@ -169,51 +189,51 @@ impl App {
 
     /// Asks what a dropped picture is for.
     fn dropped_row(&mut self, ui: &mut Ui) {
-        let Some(path) = self.dropped.clone() else { return };
+        let Some(path) = self.files.dropped.clone() else { return };
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let row = egui::Panel::bottom("dropped").frame(theme::panel_frame());
         let Some(choice) = row.show(ui, |ui| bars::dropped(ui, &name)).inner else { return };
-        self.dropped = None;
+        self.files.dropped = None;
         match choice {
-            Dropped::Open => self.open_unless_lost(&path.to_string_lossy()),
+            Dropped::Open => self.open_or_ask(&path.to_string_lossy()),
             Dropped::Reference => self.load_reference(&ui.ctx().clone(), path),
             Dropped::Cancelled => {}
         }
     }
 
-    /// What to begin with, where it is wanted.
+    /// Shows the start row, where it is wanted.
     fn start_row(&mut self, ui: &mut Ui) {
-        let Some(start) = &mut self.start else { return };
+        let Some(start) = &mut self.chrome.start else { return };
         let row = egui::Panel::bottom("start").frame(theme::panel_frame());
         let Preferences { recent, start: again, .. } = &mut self.preferences;
         match row.show(ui, |ui| start.show(ui, recent, again)).inner {
-            Some(StartChoice::Open(source)) => self.open_unless_lost(&source),
+            Some(StartChoice::Open(source)) => self.open_or_ask(&source),
             Some(StartChoice::Command(command)) => self.execute(&ui.ctx().clone(), command),
-            Some(StartChoice::Close) => self.start = None,
+            Some(StartChoice::Close) => self.chrome.start = None,
             None => {}
         }
     }
 
     fn palette_window(&mut self, ui: &Ui, commands: &mut Vec<Command>) {
-        let Some(palette) = &mut self.palette else { return };
+        let Some(palette) = &mut self.chrome.palette else { return };
         match palette.show(ui.ctx()) {
             palette::PaletteChoice::Pending => return,
             palette::PaletteChoice::Done(command) => commands.push(command),
             palette::PaletteChoice::Left => {}
         }
-        self.palette = None;
+        self.chrome.palette = None;
     }
 
     fn path_bar_row(&mut self, ui: &mut Ui) {
-        let Some(bar) = &mut self.path_bar else { return };
+        let Some(bar) = &mut self.files.path_bar else { return };
         let purpose = bar.purpose;
         let frame = theme::panel_frame();
         let typing = egui::Panel::top("path").frame(frame).show(ui, |ui| bar.show(ui)).inner;
         match typing {
             Typed::Pending => {}
-            Typed::Cancelled => self.path_bar = None,
+            Typed::Cancelled => self.files.path_bar = None,
             Typed::Done(text) => {
-                self.path_bar = None;
+                self.files.path_bar = None;
                 self.take_path(ui.ctx(), purpose, PathBuf::from(typed(&text)));
             }
         }

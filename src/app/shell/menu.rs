@@ -3,7 +3,7 @@
 use egui::{Button, MenuBar, RectAlign, RichText, Tooltip, Ui};
 
 use crate::app::command::Command;
-use crate::app::panels::Panel;
+use crate::app::document::Editor;
 use crate::app::ui::theme::color;
 
 const OPEN: [Command; 2] = [Command::Open, Command::OpenPath];
@@ -32,16 +32,28 @@ const SNAPSHOTS: [&[Command]; 4] = [
 ];
 const HELP: [&[Command]; 2] = [&[Command::Start], &[Command::Palette, Command::Shortcuts]];
 
+/// The contents of the menus, and where their requests go.
+pub struct MenuItems<'a> {
+    /// The document, for the names of the edits that undo and redo are about.
+    pub editor: &'a Editor,
+    /// Files that were open before, the last one first.
+    pub recent: &'a [String],
+    /// The one of them that is asked for.
+    pub reopened: &'a mut Option<String>,
+    /// Commands that are asked for.
+    pub commands: &'a mut Vec<Command>,
+}
+
 /// Shows the bar. `title` names what is open.
-pub fn show(ui: &mut Ui, panel: &mut Panel<'_>, title: &str) {
+pub fn show(ui: &mut Ui, items: &mut MenuItems<'_>, title: &str) {
     MenuBar::new().ui(ui, |ui| {
-        file_menu(ui, panel);
-        edit_menu(ui, panel);
-        menu(ui, panel, "Render", &RENDER);
-        menu(ui, panel, "View", &VIEW);
-        menu(ui, panel, "Compare", &COMPARE);
-        menu(ui, panel, "Snapshots", &SNAPSHOTS);
-        menu(ui, panel, "Help", &HELP);
+        file_menu(ui, items);
+        edit_menu(ui, items);
+        menu(ui, items, "Render", &RENDER);
+        menu(ui, items, "View", &VIEW);
+        menu(ui, items, "Compare", &COMPARE);
+        menu(ui, items, "Snapshots", &SNAPSHOTS);
+        menu(ui, items, "Help", &HELP);
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
             ui.add_space(4.0);
             let title = RichText::new(title).color(color::TEXT_DIM);
@@ -50,25 +62,25 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>, title: &str) {
     });
 }
 
-fn file_menu(ui: &mut Ui, panel: &mut Panel<'_>) {
+fn file_menu(ui: &mut Ui, items: &mut MenuItems<'_>) {
     ui.menu_button("File", |ui| {
-        OPEN.into_iter().for_each(|command| item(ui, panel, command, command.text(), true));
-        recent_menu(ui, panel);
+        OPEN.into_iter().for_each(|command| item(ui, items, command, command.text(), true));
+        recent_menu(ui, items);
         ui.separator();
-        groups(ui, panel, &FILE);
+        groups(ui, items, &FILE);
     });
 }
 
 /// The files that were open before.
-fn recent_menu(ui: &mut Ui, panel: &mut Panel<'_>) {
-    let recent = panel.recent;
+fn recent_menu(ui: &mut Ui, items: &mut MenuItems<'_>) {
+    let recent = items.recent;
     ui.add_enabled_ui(!recent.is_empty(), |ui| {
         ui.menu_button("Open recent", |ui| {
             for path in recent {
                 let name = std::path::Path::new(path).file_name().unwrap_or_default();
                 let button = Button::new(name.to_string_lossy()).min_size(egui::vec2(190.0, 0.0));
                 if ui.add(button).on_hover_text(path).clicked() {
-                    *panel.reopened = Some(path.clone());
+                    *items.reopened = Some(path.clone());
                     ui.close();
                 }
             }
@@ -76,35 +88,35 @@ fn recent_menu(ui: &mut Ui, panel: &mut Panel<'_>) {
     });
 }
 
-fn menu(ui: &mut Ui, panel: &mut Panel<'_>, title: &str, groups: &[&[Command]]) {
-    ui.menu_button(title, |ui| self::groups(ui, panel, groups));
+fn menu(ui: &mut Ui, items: &mut MenuItems<'_>, title: &str, groups: &[&[Command]]) {
+    ui.menu_button(title, |ui| self::groups(ui, items, groups));
 }
 
-fn groups(ui: &mut Ui, panel: &mut Panel<'_>, groups: &[&[Command]]) {
+fn groups(ui: &mut Ui, items: &mut MenuItems<'_>, groups: &[&[Command]]) {
     for (index, group) in groups.iter().enumerate() {
         if index > 0 {
             ui.separator();
         }
         for command in *group {
-            item(ui, panel, *command, command.text(), true);
+            item(ui, items, *command, command.text(), true);
         }
     }
 }
 
-fn edit_menu(ui: &mut Ui, panel: &mut Panel<'_>) {
-    let undo = panel.editor.undo_name().map(|name| format!("Undo {}", name.to_lowercase()));
-    let redo = panel.editor.redo_name().map(|name| format!("Redo {}", name.to_lowercase()));
+fn edit_menu(ui: &mut Ui, items: &mut MenuItems<'_>) {
+    let undo = items.editor.undo_name().map(|name| format!("Undo {}", name.to_lowercase()));
+    let redo = items.editor.redo_name().map(|name| format!("Redo {}", name.to_lowercase()));
     ui.menu_button("Edit", |ui| {
         let names = [(Command::Undo, undo), (Command::Redo, redo)];
         for (command, name) in names {
             let enabled = name.is_some();
             let text = name.unwrap_or_else(|| command.text().to_owned());
-            item(ui, panel, command, &text, enabled);
+            item(ui, items, command, &text, enabled);
         }
     });
 }
 
-fn item(ui: &mut Ui, panel: &mut Panel<'_>, command: Command, text: &str, enabled: bool) {
+fn item(ui: &mut Ui, items: &mut MenuItems<'_>, command: Command, text: &str, enabled: bool) {
     let key = RichText::new(ui.ctx().format_shortcut(&command.shortcut())).color(color::TEXT_DIM);
     let button = Button::new(text).shortcut_text(key).min_size(egui::vec2(190.0, 0.0));
     let response = ui.add_enabled(enabled, button);
@@ -113,7 +125,7 @@ fn item(ui: &mut Ui, panel: &mut Panel<'_>, command: Command, text: &str, enable
     tooltip.popup = tooltip.popup.align(RectAlign::RIGHT);
     tooltip.show(|ui| ui.label(command.tooltip()));
     if response.clicked() {
-        panel.commands.push(command);
+        items.commands.push(command);
         ui.close();
     }
 }

@@ -9,7 +9,7 @@ use crate::app::ui::widgets::key_of;
 /// Width of the palette and height of its list, in points.
 const SIZE: egui::Vec2 = vec2(380.0, 300.0);
 
-/// What is typed and chosen so far.
+/// The palette with the text typed so far and the command chosen.
 #[derive(Debug, Default)]
 pub struct Palette {
     text: String,
@@ -17,14 +17,14 @@ pub struct Palette {
     shown: bool,
 }
 
-/// What became of the palette.
+/// The outcome of a frame of the palette.
 #[derive(Debug, PartialEq, Eq)]
 pub enum PaletteChoice {
-    /// It is still open.
+    /// The palette is still open.
     Pending,
     /// A command was chosen.
     Done(Command),
-    /// It was left.
+    /// The palette was left.
     Left,
 }
 

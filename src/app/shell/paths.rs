@@ -4,38 +4,37 @@ use std::path::{Path, PathBuf};
 
 use egui::Context;
 
-use super::App;
-use crate::app::jobs::dialogs::{Dialog, Dialogs, Purpose};
-use crate::app::shell::bars::PathBar;
+use super::app::App;
+use crate::app::jobs::dialogs::Purpose;
 use crate::app::shell::save::Content;
 
 impl App {
     /// Opens a path or `builtin:NAME`.
     pub(super) fn open(&mut self, source: &str) {
-        self.path_bar = None;
+        self.files.path_bar = None;
         self.engine.open(source);
     }
 
     /// Opens a dropped file, or measures against it; of a picture that could be either it asks.
     pub(super) fn take_dropped(&mut self, ctx: &Context, path: &Path) {
         let extension = path.extension().map(|extension| extension.to_ascii_lowercase());
-        self.dropped = None;
+        self.files.dropped = None;
         match extension.as_deref().and_then(std::ffi::OsStr::to_str) {
             Some("npy") => self.load_reference(ctx, path.to_owned()),
-            Some("exr") => self.dropped = Some(path.to_owned()),
-            _ => self.open_unless_lost(&path.to_string_lossy()),
+            Some("exr") => self.files.dropped = Some(path.to_owned()),
+            _ => self.open_or_ask(&path.to_string_lossy()),
         }
     }
 
     /// Does with a chosen path what it was asked for.
     pub(super) fn take_path(&mut self, ctx: &Context, purpose: Purpose, path: PathBuf) {
         if purpose == Purpose::Open {
-            self.open_unless_lost(&path.to_string_lossy());
+            self.open_or_ask(&path.to_string_lossy());
         } else if purpose == Purpose::Reference {
             self.load_reference(ctx, path);
         } else if self.engine.is_building() {
             // The film is about to become that of another scene.
-            self.waiting.push((purpose, path));
+            self.files.waiting.push((purpose, path));
         } else {
             self.save(ctx, purpose, path);
         }
@@ -44,7 +43,7 @@ impl App {
     /// Saves what waited for a build to end.
     pub(super) fn save_waiting(&mut self, ctx: &Context) {
         if !self.engine.is_building() {
-            for (purpose, path) in std::mem::take(&mut self.waiting) {
+            for (purpose, path) in std::mem::take(&mut self.files.waiting) {
                 self.save(ctx, purpose, path);
             }
         }
@@ -60,18 +59,18 @@ impl App {
         if let Content::Scene(settings) = &content {
             self.unsaved.writes(&path, settings.clone());
         }
-        if let Err(error) = self.saver.start(path, content, move || wake.request_repaint()) {
+        if let Err(error) = self.files.saver.start(path, content, move || wake.request_repaint()) {
             self.notices.failed(error.to_string());
         }
     }
 
-    /// What saving writes at this moment; `None` where there is nothing yet.
+    /// The content that saving writes at this moment; `None` where there is nothing yet.
     fn content(&self, ctx: &Context, purpose: Purpose) -> Option<Content> {
-        if self.subject.is_some() && matches!(purpose, Purpose::SaveExr | Purpose::SavePng) {
-            return self.stored_content(purpose);
+        if self.files.subject.is_some() && matches!(purpose, Purpose::SaveExr | Purpose::SavePng) {
+            return self.snapshot_content(purpose);
         }
         let document = &self.editor.document;
-        let engine = self.second_side.edited(&self.engine);
+        let engine = self.compare.second_side.edited(&self.engine);
         let settings = engine.rendered()?;
         match purpose {
             Purpose::Open | Purpose::Reference => None,
@@ -98,29 +97,21 @@ impl App {
     /// Asks for a path in the way that the options say.
     pub(super) fn ask(&mut self, ctx: &Context, purpose: Purpose) {
         // Beside the live picture it is that which is worked on.
-        let shown = self.snapshots.strip.shown_item().filter(|_| self.versus.is_none());
-        self.subject = shown.map(|item| item.entry.id.clone());
-        if self.dialogs == Dialogs::Typed {
-            self.ask_typed(purpose);
-        } else if self.dialog.is_none() {
-            let wake = ctx.clone();
-            match Dialog::open(purpose, &self.suggested(purpose), move || wake.request_repaint()) {
-                Ok(dialog) => self.dialog = Some(dialog),
-                Err(_) => self.ask_typed(purpose),
-            }
-        }
+        let shown = self.snapshots.strip.shown_item().filter(|_| self.compare.versus.is_none());
+        self.files.subject = shown.map(|item| item.entry.id.clone());
+        self.files.ask(ctx, purpose, &self.suggested(purpose));
     }
 
     /// Shows the bar to type a path in.
     pub(super) fn ask_typed(&mut self, purpose: Purpose) {
-        self.path_bar = Some(PathBar::new(purpose, self.suggested(purpose)));
+        self.files.ask_typed(purpose, self.suggested(purpose));
     }
 
     /// A file beside what is open, or in the present folder.
     fn suggested(&self, purpose: Purpose) -> PathBuf {
         let here = std::env::current_dir().unwrap_or_default();
         let name = self.suggested_name(purpose);
-        let folder = Path::new(&self.source).parent().filter(|folder| folder.is_dir());
+        let folder = Path::new(&self.opened.source).parent().filter(|folder| folder.is_dir());
         folder.map_or_else(|| here.clone(), |folder| here.join(folder)).join(name)
     }
 }

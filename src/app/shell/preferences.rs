@@ -1,5 +1,5 @@
-//! What the window remembers between runs: how it is laid out, how pictures are shown, which files
-//! were open. Never the scene or the strategy.
+//! The preferences kept between runs: how the window is laid out, how pictures are shown, which
+//! files were open. Never the scene or the strategy.
 
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -13,12 +13,14 @@ use crate::image::tone::{Tone, ToneCurve};
 
 /// The file, in the folder of the program's data.
 const FILE: &str = "window.json";
-/// Files that are remembered at most.
+/// The variable of the environment that names the data folder.
+const DATA: &str = "FLAMBEAU_DATA";
+/// Files kept in the list of recent files at most.
 const RECENT: usize = 10;
-/// Scenes whose references are remembered at most.
+/// Scenes whose references are kept at most.
 const REFERENCES: usize = 20;
 
-/// What is remembered.
+/// The preferences of the window.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Preferences {
@@ -62,8 +64,8 @@ impl Default for Preferences {
 }
 
 impl Preferences {
-    /// What was remembered in `data`. What cannot be read is as good as nothing: no setting of the
-    /// window is worth a complaint at its start.
+    /// The preferences in the data folder. A file that cannot be read is as good as none: no setting of
+    /// the window is worth a complaint at its start.
     pub fn read(data: &Path) -> Self {
         let text = std::fs::read_to_string(data.join(FILE)).unwrap_or_default();
         serde_json::from_str(&text).unwrap_or_default()
@@ -130,6 +132,13 @@ fn sane(value: f32, or: f32) -> f32 {
     if value.is_finite() && value != 0.0 { value } else { or }
 }
 
+/// The folder of what outlasts a run: `chosen`, or what `FLAMBEAU_DATA` says, or where the system
+/// keeps the data of the user's programs; `None` where there is no such place.
+pub fn data_folder(chosen: Option<PathBuf>) -> Option<PathBuf> {
+    let named = || std::env::var_os(DATA).filter(|name| !name.is_empty()).map(PathBuf::from);
+    chosen.or_else(named).or_else(|| eframe::storage_dir("flambeau"))
+}
+
 /// The name of what was opened, the same from every folder.
 pub fn full_name(source: &str) -> String {
     if source.starts_with("builtin:") {
@@ -145,7 +154,7 @@ mod tests {
     use crate::image::tone::Channel;
 
     #[test]
-    fn what_is_written_is_remembered_and_nonsense_is_nothing() {
+    fn preferences_are_read_as_written_and_nonsense_is_the_default() {
         let folder = tempfile::tempdir().unwrap();
         let data = folder.path().join("data");
         assert_eq!(Preferences::read(&data), Preferences::default());

@@ -6,23 +6,23 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, mpsc};
 
 use super::export::SavedView;
+use crate::app::jobs::film_file::{header, receive};
 use crate::error::{Error, Result};
 use crate::files;
-use crate::image::exr::{self, SnapshotHeader};
+use crate::image::exr;
 use crate::image::png;
 use crate::image::tone::Tone;
 use crate::render::publish::resolve;
 use crate::render::{Film, Picture};
 use crate::scene::{self, Settings};
-use crate::transport::PATH_VERSION;
 
-/// What is to be written.
+/// The content of a file to write.
 pub enum Content {
     /// A snapshot: the linear picture with its layers and all that is needed to go on.
     Exr {
         /// The film, once the session has copied it.
         film: mpsc::Receiver<Film>,
-        /// What the film shows; its size, seed and limit are those of the film.
+        /// The settings of the film, with its size, seed and limit.
         settings: Settings,
         /// Seconds spent on it, and CPU time.
         seconds: [f64; 2],
@@ -36,7 +36,7 @@ pub enum Content {
     },
     /// A scene file.
     Scene(Settings),
-    /// What another file holds.
+    /// The content of another file.
     Copy(PathBuf),
     /// A picture kept earlier, as shown.
     Shown {
@@ -139,29 +139,4 @@ fn write(path: &Path, content: Content) -> Result<()> {
         Content::View(view) => view.write(path),
         Content::Shown { picture, tone } => png::write(path, picture.size, &picture.pixels, tone),
     }
-}
-
-/// The film, once the session has copied it; `path` is what it is wanted for.
-pub fn receive(path: &Path, film: &mpsc::Receiver<Film>) -> Result<Film> {
-    film.recv().map_err(|_| {
-        let reason = "there is no picture to save, or not enough memory to copy it";
-        Error::invalid(path.display().to_string(), "", reason)
-    })
-}
-
-/// What the snapshot says about how it came about, in so many seconds and so many of CPU time.
-pub fn header(settings: &Settings, [seconds, cpu_seconds]: [f64; 2]) -> Result<SnapshotHeader> {
-    let strategy = toml::to_string(&settings.strategy)
-        .map_err(|error| Error::invalid("", "strategy", error.to_string()))?;
-    Ok(SnapshotHeader {
-        scene: scene::to_toml(settings, None)?,
-        strategy,
-        seed: settings.film.seed,
-        version: env!("CARGO_PKG_VERSION").to_owned(),
-        path_version: PATH_VERSION,
-        wall_seconds: seconds,
-        cpu_seconds_render: cpu_seconds,
-        files: scene::fingerprints(settings)?,
-        ..SnapshotHeader::default()
-    })
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use egui::{Context, Ui};
 
-use super::App;
+use super::app::App;
 use crate::app::compare::second_side::StoredSide;
 use crate::app::document::Side;
 use crate::app::jobs::dialogs::Purpose;
@@ -30,12 +30,12 @@ impl App {
     }
 
     fn keep(&mut self) {
-        let engine = self.second_side.edited(&self.engine);
+        let engine = self.compare.second_side.edited(&self.engine);
         let (Some(settings), Some(picture)) = (engine.rendered(), engine.picture()) else {
             self.notices.failed("There is no picture to keep yet.");
             return;
         };
-        let (title, strategy) = (self.short_title(), strategy(settings));
+        let (title, strategy) = (self.opened.short_title(), strategy(settings));
         let name = match title.ends_with(&strategy) {
             true => title,
             false => format!("{title} {strategy}"),
@@ -51,16 +51,9 @@ impl App {
         self.snapshots.keep(keep);
     }
 
-    /// What to call a source: a snapshot of the strip by its name.
+    /// The name of a source: of a snapshot of the strip its own.
     pub(super) fn name_of(&self, source: String) -> String {
         self.snapshots.name_of(Path::new(&source)).map_or(source.clone(), str::to_owned)
-    }
-
-    /// The title without the ending of a file.
-    fn short_title(&self) -> String {
-        let title = self.title();
-        let stem = title.rsplit_once('.').map(|(stem, _)| stem);
-        stem.filter(|stem| !stem.is_empty()).unwrap_or(&title).to_owned()
     }
 
     /// The picture in the viewport: a snapshot, or the live one.
@@ -71,7 +64,7 @@ impl App {
     /// Shows the snapshot after the one shown. Past the last one comes the live picture, except
     /// where both are compared and the live one is in sight already.
     pub(super) fn show_next_snapshot(&mut self) {
-        if self.versus.is_none() || !self.is_last_shown() {
+        if self.compare.versus.is_none() || !self.is_last_shown() {
             self.snapshots.strip.show_next();
         }
     }
@@ -93,42 +86,43 @@ impl App {
             );
             return;
         }
-        self.versus = Some(side);
+        self.compare.versus = Some(side);
         let document = &mut self.editor.document;
         if document.compared.take().is_some() {
             self.editor.name_edit("comparison");
         }
     }
 
-    /// Brings the duel in line with the snapshot that is compared, if one is.
+    /// Brings the second side in line with the snapshot that is compared, if one is.
     pub(super) fn update_versus(&mut self) {
         let shown = self.snapshots.strip.shown_item();
-        self.versus = self.versus.filter(|_| shown.is_some());
+        self.compare.versus = self.compare.versus.filter(|_| shown.is_some());
         if self.editor.document.compared.is_some() {
             // An edit or an undo began a comparison of strategies.
-            self.versus = None;
+            self.compare.versus = None;
         }
-        self.second_side.stored = self.versus.zip(shown).map(|(side, item)| StoredSide {
-            side,
-            name: item.record.name.clone(),
-            picture: item.picture().filter(|picture| !picture.variance.is_empty()).cloned(),
-            is_biased: item.record.strategy.ends_with("biased"),
-        });
-        // Noise is told of both sides, and of a rectangle.
-        let measures = self.versus.is_some() || self.region.is_set();
+        self.compare.second_side.stored =
+            self.compare.versus.zip(shown).map(|(side, item)| StoredSide {
+                side,
+                name: item.record.name.clone(),
+                picture: item.picture().filter(|picture| !picture.variance.is_empty()).cloned(),
+                is_biased: item.record.strategy.ends_with("biased"),
+            });
+        // Noise is told of both sides, and of a region.
+        let measures = self.compare.versus.is_some() || self.compare.region.is_set();
         self.snapshots.strip.wants_variance = measures;
     }
 
     pub(super) fn go_on_from_shown(&mut self) {
         let shown = self.snapshots.strip.shown_item();
         if let Some(file) = shown.and_then(|item| self.snapshots.file(item)) {
-            self.open_unless_lost(&file.to_string_lossy());
+            self.open_or_ask(&file.to_string_lossy());
         }
     }
 
     /// The snapshot that is to be saved, where that is not the live picture.
     fn subject(&self) -> Option<&StripItem> {
-        self.subject.as_ref().and_then(|id| self.snapshots.strip.find(id))
+        self.files.subject.as_ref().and_then(|id| self.snapshots.strip.find(id))
     }
 
     /// The name to suggest for a file of what is to be saved.
@@ -140,13 +134,13 @@ impl App {
                 let name = item.record.name.replace(['/', '\\', ':'], "-");
                 format!("{name}.{extension}").into()
             }
-            None => Path::new(&self.title()).with_extension(extension),
+            None => Path::new(&self.opened.title()).with_extension(extension),
         }
     }
 
-    /// What saving writes of the snapshot that was shown when it was asked for; `None` where it is
+    /// The content to save of the snapshot that was shown when it was asked for; `None` where it is
     /// not there (any more).
-    pub(super) fn stored_content(&self, purpose: Purpose) -> Option<Content> {
+    pub(super) fn snapshot_content(&self, purpose: Purpose) -> Option<Content> {
         let item = self.subject()?;
         match purpose {
             Purpose::SaveExr => Some(Content::Copy(self.snapshots.file(item)?)),

@@ -1,4 +1,4 @@
-//! What to begin with: the scenes that Flambeau brings along as small pictures, the files of before,
+//! The start row: the scenes that Flambeau brings along as small pictures, the files of before,
 //! and how to go on. A row under the picture, which renders meanwhile.
 
 use egui::accesskit::Role;
@@ -54,7 +54,7 @@ const CARDS: [Card; 7] = [
     ),
 ];
 
-/// What was chosen.
+/// The choice of the user.
 #[derive(Clone, Debug, PartialEq)]
 pub enum StartChoice {
     /// To open a file or an embedded scene.

@@ -6,12 +6,14 @@ use glam::UVec2;
 
 use crate::app::command::Command;
 use crate::app::compare::panel;
+use crate::app::compare::second_side::SecondSide;
+use crate::app::document::Editor;
 use crate::app::jobs::live_render::LiveRender;
-use crate::app::panels::Panel;
 use crate::app::picture::viewport::Viewport;
 use crate::app::snapshots::{Snapshots, StripItem};
 use crate::app::ui::theme::{color, space};
 use crate::app::ui::widgets::{count, finite};
+use crate::app::ui::words::{percent, samples, seconds, time_left};
 use crate::image::tone::{Channel, Tone};
 use crate::render::{Layer, RenderStats};
 
@@ -20,14 +22,29 @@ const ZOOM_WIDTH: f32 = 70.0;
 /// Room that the value under the pointer takes.
 const PROBE_WIDTH: f32 = 280.0;
 
+/// The contents of the status line, and what it may change.
+pub struct StatusLine<'a> {
+    /// The document and its record of edits.
+    pub editor: &'a mut Editor,
+    /// The render of the side that is edited.
+    pub engine: &'a LiveRender,
+    /// The second side.
+    pub second_side: &'a SecondSide,
+    /// How many sides take turns at the machine.
+    pub turns: usize,
+    /// The viewport, for the zoom and the pixel under the pointer.
+    pub viewport: &'a Viewport,
+    /// The snapshots, one of which may be shown in place of the live picture.
+    pub snapshots: &'a Snapshots,
+    /// The layer that is shown in place of the picture.
+    pub layer: Option<Layer>,
+    /// Commands that buttons ask for.
+    pub commands: &'a mut Vec<Command>,
+}
+
 /// Shows the line.
-pub fn show(
-    ui: &mut Ui,
-    panel: &mut Panel<'_>,
-    engine: &LiveRender,
-    viewport: &Viewport,
-    snapshots: &Snapshots,
-) {
+pub fn show(ui: &mut Ui, panel: &mut StatusLine<'_>) {
+    let (engine, viewport, snapshots) = (panel.engine, panel.viewport, panel.snapshots);
     ui.horizontal_centered(|ui| {
         let (text, help) = if engine.paused() {
             ("Resume", "Resume sampling.")
@@ -39,12 +56,12 @@ pub fn show(
         if ui.add(button).on_hover_text(format!("{help}  [{key}]")).clicked() {
             panel.commands.push(Command::PauseResume);
         }
-        let stored = snapshots.strip.shown_item().filter(|_| panel.second_side.stored.is_none());
-        if stored.is_none() {
+        let snapshot = snapshots.strip.shown_item().filter(|_| panel.second_side.stored.is_none());
+        if snapshot.is_none() {
             bias(ui, panel);
         }
         match engine.picture() {
-            _ if let Some(item) = stored => stored_figures(ui, item),
+            _ if let Some(item) = snapshot => snapshot_figures(ui, item),
             Some(picture) => progress(ui, &picture.stats, engine, panel.turns),
             None => {
                 let opening = engine.opening().is_some() || engine.built().is_some();
@@ -70,7 +87,7 @@ pub fn show(
 }
 
 /// A picture that will never be quite right says so; of two, which one it is.
-fn bias(ui: &mut Ui, panel: &Panel<'_>) {
+fn bias(ui: &mut Ui, panel: &StatusLine<'_>) {
     if let Some(text) = panel::bias(&panel.editor.document, panel.second_side) {
         let help = "Ray marching is on (Strategy, Advanced): the picture converges to a slightly \
                     different result; more samples do not change that.";
@@ -78,8 +95,8 @@ fn bias(ui: &mut Ui, panel: &Panel<'_>) {
     }
 }
 
-/// Of a snapshot in place of the live picture.
-fn stored_figures(ui: &mut Ui, item: &StripItem) {
+/// Shows the figures of a snapshot in place of the live picture.
+fn snapshot_figures(ui: &mut Ui, item: &StripItem) {
     let record = &item.record;
     if item.picture().is_none() {
         ui.label(RichText::new(format!("Reading {}…", record.name)).color(color::ACCENT));
@@ -89,11 +106,6 @@ fn stored_figures(ui: &mut Ui, item: &StripItem) {
     let text = RichText::new(format!("Snapshot: {}, {spp} spp", record.name)).color(color::ACCENT);
     ui.add(egui::Label::new(text).truncate())
         .on_hover_text("A snapshot is shown instead of the live picture. Press Escape to go back.");
-}
-
-/// A number of samples in about two digits or more.
-pub fn samples(spp: f64) -> String {
-    if spp < 10.0 { format!("{spp:.1}") } else { format!("{spp:.0}") }
 }
 
 fn progress(ui: &mut Ui, stats: &RenderStats, engine: &LiveRender, turns: usize) {
@@ -129,17 +141,12 @@ fn progress(ui: &mut Ui, stats: &RenderStats, engine: &LiveRender, turns: usize)
 /// How long a render with an end will take to get there, one of so many that take turns.
 fn ending(ui: &mut Ui, stats: &RenderStats, engine: &LiveRender, turns: usize) {
     let wanted = engine.built().map_or(0, |built| built.settings.film.spp);
-    // A rectangle that gets all samples has another pace than the picture.
+    // A region that gets all samples has another pace than the picture.
     let is_whole = engine.picture().is_some_and(|picture| picture.focus.is_none());
     let Some(left) = seconds_left(stats, wanted).filter(|_| is_whole) else { return };
     let left = left * turns.max(1) as f64;
     let text = RichText::new(format!("{} left", time_left(left))).color(color::TEXT_DIM);
     ui.label(text).on_hover_text(format!("Time left until each pixel has {wanted} samples."));
-}
-
-/// Seconds that are left, in words.
-pub fn time_left(left: f64) -> String {
-    if left < 60.0 { format!("{:.0} s", left.ceil()) } else { seconds(left) }
 }
 
 /// At the pace so far; none before there is one, at the end, and where there is no end.
@@ -163,25 +170,6 @@ fn figure(ui: &mut Ui, value: &str, unit: &str, help: &str, width: f32) {
             ui.label(RichText::new(unit).color(color::TEXT_DIM)).on_hover_text(help);
         }
     });
-}
-
-/// A fraction in percent, in about three digits.
-pub fn percent(fraction: f64) -> String {
-    let percent = 100.0 * fraction;
-    let decimals = match percent {
-        _ if percent < 10.0 => 2,
-        _ if percent < 100.0 => 1,
-        _ => 0,
-    };
-    format!("{percent:.decimals$}")
-}
-
-fn seconds(seconds: f64) -> String {
-    if seconds < 60.0 {
-        return format!("{seconds:.1} s");
-    }
-    let minutes = (seconds / 60.0).floor();
-    format!("{minutes:.0}:{:02.0} min", (seconds - 60.0 * minutes).floor())
 }
 
 fn zoom(ui: &mut Ui, scale: f32) {
@@ -214,7 +202,7 @@ fn probe(ui: &mut Ui, viewport: &Viewport) {
         .on_hover_text("The pixel under the pointer and its linear red, green and blue values.");
 }
 
-/// What the numbers of a layer count.
+/// The unit of the numbers of a layer.
 fn unit_of(layer: Layer) -> &'static str {
     match layer {
         Layer::Depth => "length",
@@ -235,7 +223,7 @@ fn channel(value: f32) -> String {
     }
 }
 
-/// What the picture is shown by, in a word.
+/// The name of the tone curve, or of the channel shown in its place.
 fn curve_name(tone: Tone) -> &'static str {
     match tone.channel {
         Channel::Color => tone.curve.name(),
@@ -244,7 +232,7 @@ fn curve_name(tone: Tone) -> &'static str {
 }
 
 /// Exposure and tone curve, from right to left.
-fn display(ui: &mut Ui, panel: &mut Panel<'_>) {
+fn display(ui: &mut Ui, panel: &mut StatusLine<'_>) {
     let mut edit = None;
     let tone = &mut panel.editor.document.tone;
     let button = Button::new(curve_name(*tone)).min_size(egui::vec2(58.0, 0.0));
@@ -266,7 +254,7 @@ fn display(ui: &mut Ui, panel: &mut Panel<'_>) {
         edit = Some("exposure");
     }
     ui.label(RichText::new("exposure").color(color::TEXT_DIM));
-    if let Some(layer) = panel.wanted.layer {
+    if let Some(layer) = panel.layer {
         let text = RichText::new(format!("Layer: {}", layer.name())).color(color::ACCENT);
         ui.label(text).on_hover_text(
             "This layer is shown in place of the picture. Choose another under Display.",

@@ -3,7 +3,7 @@
 
 use egui::{Context, Rect, Ui};
 
-use super::App;
+use super::app::App;
 use crate::app::command::Command;
 use crate::app::shell::bars;
 use crate::app::sweep::results;
@@ -19,7 +19,7 @@ impl App {
             self.sweep.update(settings, &self.engine, size, move || wake.request_repaint());
         let held = self.sweep.holds(settings);
         self.engine.set_held(held);
-        self.second_side.set_held(held);
+        self.compare.second_side.set_held(held);
         if let Err(error) = updated {
             self.notices.failed(error.to_string());
         }

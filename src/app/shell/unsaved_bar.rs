@@ -4,16 +4,16 @@ use egui::{Button, RichText, Ui};
 
 use crate::app::ui::theme::color;
 
-/// What would lose them.
+/// An action that would lose unsaved changes.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum LosingAction {
+pub enum PendingAction {
     /// The window would close.
     Close,
     /// A scene, a volume or a snapshot would take their place.
     Open(String),
 }
 
-/// What the user says to it.
+/// The user's answer to the question.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UnsavedAnswer {
     /// Save the scene first.
@@ -29,12 +29,12 @@ pub enum UnsavedAnswer {
 pub fn ask(
     ui: &mut Ui,
     title: &str,
-    losing: &LosingAction,
+    action: &PendingAction,
     fresh: &mut bool,
 ) -> Option<UnsavedAnswer> {
-    let discard = match losing {
-        LosingAction::Close => "Close without saving",
-        LosingAction::Open(_) => "Open without saving",
+    let discard = match action {
+        PendingAction::Close => "Close without saving",
+        PendingAction::Open(_) => "Open without saving",
     };
     let buttons = [
         ("Save scene…", UnsavedAnswer::Save, "Save all settings as a scene file first."),

@@ -11,7 +11,7 @@ use egui::ColorImage;
 use super::record::Record;
 use super::store::{Fresh, Listing, Store, StoredSnapshot};
 use super::thumbnail::{self, Thumbnail};
-use crate::app::shell::save::{header, receive};
+use crate::app::jobs::film_file::{header, receive};
 use crate::error::{Error, Result};
 use crate::image::exr;
 use crate::image::tone::Tone;
@@ -20,11 +20,11 @@ use crate::render::publish::{resolve, resolve_variance};
 use crate::render::{Film, Picture};
 use crate::scene::Settings;
 
-/// What was left behind is removed at a start this much later; another window may be at work on
+/// Leftovers are removed at a start this much later; another window may be at work on
 /// what is fresher.
 const LEFT_BEHIND: Duration = Duration::from_secs(3600);
 
-/// What the disk is asked for.
+/// A job for the disk.
 pub enum DiskJob {
     /// Everything that is there, after what was left behind is removed.
     List,
@@ -48,7 +48,7 @@ pub enum DiskJob {
 pub struct Keep {
     /// The film, once the session has copied it.
     pub film: mpsc::Receiver<Film>,
-    /// What it shows, with the size, seed and limit of the film.
+    /// The settings of the film, with its size, seed and limit.
     pub settings: Settings,
     /// Seconds spent on it.
     pub seconds: f64,
@@ -56,24 +56,24 @@ pub struct Keep {
     pub cpu_seconds: f64,
     /// How it is shown.
     pub tone: Tone,
-    /// What it is called.
+    /// Its name.
     pub name: String,
 }
 
 /// A snapshot with its small picture.
 pub type SnapshotWithThumbnail = (StoredSnapshot, Option<ColorImage>);
 
-/// What the disk has to say.
+/// A report of the disk workers.
 pub enum DiskReport {
-    /// What is there, and what else is.
+    /// The snapshots there are, and what else is in the folder.
     Listed(Vec<SnapshotWithThumbnail>, Vec<String>),
     /// A picture is kept.
     Kept {
-        /// As it is on the disk.
+        /// The snapshot on the disk.
         kept: SnapshotWithThumbnail,
         /// The picture.
         picture: Arc<Picture>,
-        /// What had to go so that the rest keeps within the limit.
+        /// The snapshots removed so that the rest keeps within the limit.
         gone: Vec<StoredSnapshot>,
     },
     /// A picture could not be kept.
@@ -99,7 +99,7 @@ struct DiskThread {
     thread: Option<JoinHandle<()>>,
 }
 
-/// What a thread works with.
+/// The context that a worker thread works with.
 struct WorkerContext {
     store: Option<Store>,
     limit: u64,
@@ -118,19 +118,19 @@ impl DiskWorkers {
         on_report: impl Fn() + Clone + Send + 'static,
     ) -> Result<Self> {
         let (sender, reports) = mpsc::channel();
-        let desk = |name: &str| {
-            let bench = WorkerContext { store: store.clone(), limit, reports: sender.clone() };
-            DiskThread::new(name, bench, on_report.clone())
+        let start = |name: &str| {
+            let context = WorkerContext { store: store.clone(), limit, reports: sender.clone() };
+            DiskThread::new(name, context, on_report.clone())
         };
-        Ok(Self { writer: desk("snapshots")?, reader: desk("snapshot")?, reports })
+        Ok(Self { writer: start("snapshots")?, reader: start("snapshot")?, reports })
     }
 
     /// Asks the disk for something.
     pub fn ask(&self, job: DiskJob) {
         let reads = matches!(job, DiskJob::Read(_) | DiskJob::ReadWithVariance(_));
-        let desk = if reads { &self.reader } else { &self.writer };
-        if let Some(jobs) = &desk.jobs {
-            // The thread lives as long as its desk.
+        let thread = if reads { &self.reader } else { &self.writer };
+        if let Some(jobs) = &thread.jobs {
+            // The thread lives as long as its handle.
             let _ = jobs.send(job);
         }
     }
@@ -156,7 +156,7 @@ impl Drop for DiskWorkers {
 impl DiskThread {
     fn new(
         name: &str,
-        bench: WorkerContext,
+        context: WorkerContext,
         on_report: impl Fn() + Send + 'static,
     ) -> Result<Self> {
         let (jobs, todo) = mpsc::channel();
@@ -164,7 +164,7 @@ impl DiskThread {
             .name(name.to_owned())
             .spawn(move || {
                 while let Ok(job) = todo.recv() {
-                    bench.work(job);
+                    context.work(job);
                     on_report();
                 }
             })

@@ -10,11 +10,11 @@ use egui::{
 };
 
 use crate::app::command::Command;
-use crate::app::shell::status::{percent, samples};
 use crate::app::snapshots::{
     LARGEST_THUMBNAIL, SmallPicture, Snapshots, StripItem, now, size_in_words,
 };
 use crate::app::ui::theme::{color, size, space};
+use crate::app::ui::words::{percent, samples};
 use crate::render::Picture;
 
 /// Room for a small picture, in points.

@@ -1,4 +1,4 @@
-//! What is written down beside a snapshot.
+//! The record beside a snapshot: name, note and figures.
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
@@ -12,12 +12,12 @@ pub const LONGEST_NAME: usize = 80;
 /// The most letters of a note.
 pub const LONGEST_NOTE: usize = 400;
 
-/// What is written down beside a snapshot, for the strip to show without reading the picture.
+/// The record beside a snapshot, for the strip to show without reading the picture.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Record {
-    /// What the user calls it.
+    /// The user's name for it.
     pub name: String,
-    /// What the user has to say about it; a snapshot with a note is kept longer.
+    /// The user's note about it; a snapshot with a note is kept longer.
     #[serde(default)]
     pub note: String,
     /// When it was kept, in milliseconds since the beginning of 1970.
@@ -36,7 +36,7 @@ pub struct Record {
 }
 
 impl Record {
-    /// Of a picture of `settings` that is kept now.
+    /// The record of a picture of `settings` that is kept now.
     pub fn new(name: String, settings: &Settings, stats: &RenderStats) -> Self {
         Self {
             name,

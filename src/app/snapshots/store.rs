@@ -43,18 +43,18 @@ pub struct Store {
 pub struct StoredSnapshot {
     /// The name of its own folder.
     pub id: String,
-    /// What is written down beside it.
+    /// The record beside it.
     pub record: Record,
-    /// What it takes on the disk.
+    /// Bytes that it takes on the disk.
     pub bytes: u64,
 }
 
-/// What is in the folder.
+/// The contents of the folder.
 #[derive(Debug, Default, PartialEq)]
 pub struct Listing {
     /// The snapshots, the oldest first.
     pub entries: Vec<StoredSnapshot>,
-    /// What else is there, one sentence each.
+    /// Things there that are no snapshots, one sentence each.
     pub problems: Vec<String>,
 }
 
@@ -62,9 +62,9 @@ pub struct Listing {
 pub struct Fresh<'a> {
     /// Its samples.
     pub film: &'a Film,
-    /// What the picture's file says about itself.
+    /// The header of the picture's file.
     pub header: &'a SnapshotHeader,
-    /// What is written down beside it.
+    /// The record beside it.
     pub record: Record,
     /// The picture, small.
     pub thumbnail: &'a Thumbnail,

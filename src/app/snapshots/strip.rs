@@ -15,7 +15,7 @@ const READY_BYTES: usize = 512 << 20;
 
 /// A snapshot in the strip.
 pub struct StripItem {
-    /// As it is on the disk.
+    /// The snapshot as it is on the disk.
     pub entry: StoredSnapshot,
     /// Name and note as they are being edited, and the figures.
     pub record: Record,
@@ -39,7 +39,7 @@ pub struct Strip {
     items: Vec<StripItem>,
     /// The place of the one shown; none: the live picture.
     shown: Option<usize>,
-    /// What was deleted, the latest last, each with the place it had.
+    /// The deleted snapshots, the latest last, each with the place it had.
     deleted: Vec<(usize, StripItem)>,
     /// Whether what is shown has changed since the strip was last drawn.
     moved: bool,
@@ -154,7 +154,7 @@ impl Strip {
         self.open = Some(!self.is_open());
     }
 
-    /// What the disk should be asked to read: the picture shown, or one that a key away.
+    /// The picture that the disk should be asked to read: the one shown, or one that is a key away.
     pub fn wanted(&self) -> Option<DiskJob> {
         let shown = self.shown?;
         let near = [Some(shown), shown.checked_sub(1), Some(shown + 1)];

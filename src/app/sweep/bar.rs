@@ -43,7 +43,7 @@ impl BarAxis {
         (self.low.ceil() as i32..=self.high.floor() as i32).map(|power| 10_f64.powi(power))
     }
 
-    /// Those of them that there is room to write, 1 among them.
+    /// The powers of ten that there is room to write, 1 among them.
     fn labeled_powers(&self) -> impl Iterator<Item = f64> {
         let decade = f64::from(SIZE.x) / (self.high - self.low);
         let every = (f64::from(LABEL) / decade).ceil().max(1.0) as i32;
@@ -95,7 +95,7 @@ impl BarAxis {
     }
 }
 
-/// What the bar says in words.
+/// The bar in words, for tooltips and screen readers.
 fn spoken(speed_up: &SpeedUp) -> String {
     let [low, high] = speed_up.interval().map(|end| rounded(end, 2));
     let ratio = rounded(speed_up.ratio, 2);

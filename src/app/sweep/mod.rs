@@ -1,4 +1,6 @@
 //! Every strategy tried on the shot, on a thread of its own, while the live render waits.
+//!
+//! - `results`: the ranking in a window; `bar`: its bars.
 
 pub mod bar;
 pub mod results;
@@ -25,7 +27,7 @@ const SET_UP: f64 = 0.1;
 /// The part of it behind that by which its pace is known.
 const PACED: f64 = 0.05;
 
-/// What is tried, and what came out last.
+/// The sweep under way and the results of the last one.
 pub struct Sweep {
     /// CPU seconds of each strategy.
     pub seconds: f64,
@@ -38,9 +40,9 @@ pub struct Sweep {
     threads: Option<usize>,
 }
 
-/// What came out.
+/// The results of a sweep.
 pub struct Results {
-    /// What was tried on.
+    /// The settings of the shot.
     settings: Settings,
     /// The strategies, ranked.
     pub ranking: Ranking,
@@ -58,7 +60,7 @@ struct Running {
     since: Option<(Instant, f64)>,
 }
 
-/// What the thread has to say.
+/// A report of the thread.
 enum SweepReport {
     Progress(SweepProgress),
     /// The ranking and whether it was cancelled before its end, or what failed.
@@ -98,7 +100,7 @@ impl Sweep {
         (self.running, self.results, self.wanted) = (None, None, false);
     }
 
-    /// What came out last.
+    /// The results of the last sweep.
     pub fn results(&self) -> Option<&Results> {
         self.results.as_ref()
     }
@@ -235,7 +237,7 @@ impl Running {
     }
 }
 
-/// What the thread does.
+/// The work of the thread.
 struct SweepWork {
     scene: Arc<Scene>,
     trials: Vec<Trial>,

@@ -7,23 +7,22 @@ use egui::{Button, Context, DragValue, Grid, Label, Rect, RichText, ScrollArea, 
 use super::bar::BarAxis;
 use crate::app::command::Command;
 use crate::app::document::Editor;
-use crate::app::panels::explain;
-use crate::app::shell::status::time_left;
 use crate::app::sweep::{Results, Sweep};
 use crate::app::ui::theme::{color, space};
-use crate::app::ui::widgets::{finite, key_of, row_label, significant};
+use crate::app::ui::widgets::{explain, finite, key_of, row_label, significant};
+use crate::app::ui::words::time_left;
 use crate::format::percent;
 use crate::render::sweep::words::{headline, note, relative_time, remarks};
 use crate::render::sweep::{Gain, RankedTrial, Ranking, SweepProgress, TrialSource, Worth};
 
 /// Width of the window's contents.
 const WIDTH: f32 = 640.0;
-/// What the window has above and below the results.
+/// Height of the window's parts above and below the results, in points.
 const AROUND: f32 = 110.0;
 /// Width of a column of times.
 const TIME: f32 = 92.0;
 
-/// What the progress row says, and the fraction done.
+/// The text of the progress row, and the fraction done.
 pub fn progress((progress, left): &(SweepProgress, Option<Duration>)) -> (String, f32) {
     match progress {
         SweepProgress::Preparing(done, all) => {
@@ -159,7 +158,7 @@ fn figures(ui: &mut Ui, entry: &RankedTrial) {
     }
 }
 
-/// What each toggle brings alone, and what is lost without it.
+/// Shows the gain of each toggle alone, and the loss without it.
 fn worths(ui: &mut Ui, ranking: &Ranking) {
     Grid::new("toggles").num_columns(3).spacing([space::ROW * 4.0, 3.0]).show(ui, |ui| {
         heading(ui, "toggle", "");

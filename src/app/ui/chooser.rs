@@ -5,11 +5,11 @@ use egui::{Button, Id, ScrollArea, TextEdit, Ui};
 /// Height of the list, in points.
 const HEIGHT: f32 = 132.0;
 
-/// What the list was left at.
+/// The state that the list was left in.
 #[derive(Clone, Debug, Default)]
 struct Memory {
     chosen: usize,
-    /// What of the names is looked for.
+    /// The part of a name that is looked for.
     text: String,
 }
 

@@ -23,7 +23,7 @@ pub enum Level {
 pub struct Notice {
     /// How grave it is.
     pub level: Level,
-    /// What happened, to what, and how to mend it.
+    /// The event, its object, and how to mend it.
     pub text: String,
 }
 

@@ -8,7 +8,7 @@ use egui::{CollapsingHeader, Context, Id, RichText, Ui};
 
 use crate::app::ui::theme::{color, space};
 
-/// What was opened and folded, shared between the window and the parts that it shows.
+/// The sections opened and folded, shared between the window and the sections that it shows.
 #[derive(Clone, Debug, Default)]
 pub struct Sections(Arc<Mutex<SectionState>>);
 
@@ -29,7 +29,7 @@ struct SectionState {
 }
 
 impl Sections {
-    /// As they were left, for the parts shown in `ctx` to find.
+    /// Sections as they were left, for the parts shown in `ctx` to find.
     pub fn install(ctx: &Context, open: BTreeMap<String, bool>) -> Self {
         let sections = Self(Arc::new(Mutex::new(SectionState { open, ..SectionState::default() })));
         ctx.data_mut(|data| data.insert_temp(Id::NULL, sections.clone()));

@@ -17,9 +17,9 @@ pub mod color {
     pub const WELL: Color32 = Color32::from_gray(19);
     /// Buttons and boxes at rest.
     pub const RAISED: Color32 = Color32::from_gray(50);
-    /// The same under the pointer.
+    /// Buttons and boxes under the pointer.
     pub const RAISED_HOVER: Color32 = Color32::from_gray(60);
-    /// The same while pressed.
+    /// Buttons and boxes while pressed.
     pub const RAISED_ACTIVE: Color32 = Color32::from_gray(80);
     /// Menus and tooltips, which float above the panels.
     pub const FLOATING: Color32 = Color32::from_gray(38);
@@ -31,7 +31,7 @@ pub mod color {
     pub const TEXT: Color32 = Color32::from_gray(205);
     /// Labels, units and explanations.
     pub const TEXT_DIM: Color32 = Color32::from_gray(168);
-    /// What is on, selected or in progress.
+    /// Things that are on, selected or in progress.
     pub const ACCENT: Color32 = Color32::from_rgb(230, 142, 62);
     /// Selected text and pressed segments behind their text.
     pub const ACCENT_FILL: Color32 = Color32::from_rgb(112, 66, 26);

@@ -37,7 +37,7 @@ pub fn key_of(ui: &Ui, command: Command) -> String {
     ui.ctx().format_shortcut(&command.shortcut())
 }
 
-/// What the arrow keys ask of a control that has the focus: steps to the right and down. It keeps
+/// Steps to the right and down that the arrow keys ask of a control that has the focus. It keeps
 /// the keys for itself, which otherwise move the focus.
 pub fn arrow_steps(ui: &Ui, control: egui::Id) -> egui::Vec2 {
     let filter = egui::EventFilter {
@@ -61,6 +61,11 @@ pub fn key_summary(path: &str) -> String {
         Some(end) => help[..=end].to_owned(),
         None => help,
     }
+}
+
+/// Small dim text that explains.
+pub fn explain(ui: &mut Ui, text: &str) {
+    ui.add(Label::new(RichText::new(text).small().color(color::TEXT_DIM)).wrap());
 }
 
 /// A label of fixed width that starts a row; hovering shows the help, `name` is what it says.
@@ -91,18 +96,18 @@ pub fn row<R>(
 
 /// One number: a slider over a sensible range and a field for exact values beyond it.
 pub struct Number<'a> {
-    /// What it is called, also for screen readers and undo.
+    /// Its name, also for screen readers and undo.
     pub name: &'a str,
     /// Its key in the scene file, which knows its help and what may be typed; empty where it has
     /// none.
     pub key: &'a str,
-    /// What the slider covers.
+    /// The range of the slider.
     pub soft: RangeInclusive<f32>,
     /// Whether the slider goes by factors.
     pub logarithmic: bool,
     /// The unit behind the number, with a space before it.
     pub unit: &'a str,
-    /// What a double click goes back to.
+    /// The value that a double click goes back to.
     pub reset: f32,
 }
 
@@ -210,7 +215,7 @@ pub fn count(value: f64) -> String {
 
 /// Three numbers in a row, such as a point in space.
 pub struct Vector<'a> {
-    /// What it is called, also for screen readers and undo.
+    /// Its name, also for screen readers and undo.
     pub name: &'a str,
     /// Its key in the scene file, which knows its help and what may be typed.
     pub key: &'a str,
@@ -218,7 +223,7 @@ pub struct Vector<'a> {
     pub speed: f32,
     /// The unit behind the numbers.
     pub unit: &'a str,
-    /// What a double click on the name goes back to.
+    /// The value that a double click on the name goes back to.
     pub reset: [f32; 3],
 }
 

@@ -13,7 +13,7 @@ use crate::scene::{self, Settings};
 /// A reference and what is known about it.
 #[derive(Debug)]
 pub struct LoadedReference {
-    /// What the user calls it.
+    /// The user's name for it.
     pub name: String,
     /// The picture.
     pub reference: Reference,
@@ -22,12 +22,12 @@ pub struct LoadedReference {
     shows: Shows,
 }
 
-/// What a reference is known to show.
+/// The contents of a reference, as far as known.
 #[derive(Debug)]
 enum Shows {
     /// Something.
     Unknown,
-    /// What this camera sees.
+    /// The view of this camera.
     Camera(CameraSettings),
     /// This scene.
     Scene(Box<Settings>),
@@ -114,7 +114,7 @@ impl Loading {
         Ok(Self(receiver))
     }
 
-    /// What came of it, once.
+    /// The outcome, once.
     pub fn poll(&self) -> Option<Result<LoadedReference>> {
         match self.0.try_recv() {
             Ok(result) => Some(result),

@@ -52,12 +52,12 @@ impl Scenes {
     }
 }
 
-/// A prober that waits at a gate before it places anything.
+/// A placer that waits at a gate before it places anything.
 fn probe_placer() -> (ProbePlacer, Arc<Gate>) {
     let session = Arc::new(Session::new(Some(2), || ()).unwrap());
     let gate = Arc::new(Gate::default());
     let at = gate.clone();
-    let probe_placer = ProbePlacer::with_maker(session, move |scene, progress| {
+    let probe_placer = ProbePlacer::with(session, move |scene, progress| {
         while !at.open.load(Ordering::Relaxed) && progress(0.0) {
             std::thread::sleep(Duration::from_millis(1));
         }
@@ -83,7 +83,7 @@ fn wait(probe_placer: &ProbePlacer, will_do: impl Fn(&Picture) -> bool) -> Arc<P
     }
 }
 
-/// What a render that starts with its probes comes to.
+/// The film of a headless render, which starts with its probes.
 fn headless(built: &BuiltScene) -> Film {
     let job = RenderJob {
         sampler: Arc::new(

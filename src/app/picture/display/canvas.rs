@@ -1,10 +1,12 @@
-//! What a pane shows, drawn when it changes and copied to the window in each frame. The window is
-//! drawn far more often than there is a new picture, and a software driver feels every pixel that
-//! is exposed and curved.
+//! The canvas of a pane, drawn when it changes and copied to the window in each frame. The window
+//! is drawn far more often than there is a new picture, and a software driver feels every pixel
+//! that is exposed and curved.
 
 use egui::Rect;
 use egui::epaint::ViewportInPixels;
 use glam::{IVec2, UVec2};
+
+use super::gpu::{bind, texture};
 
 /// The pixels of the framebuffer that a part of the window covers.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,7 +18,7 @@ pub(super) struct PixelRect {
 }
 
 impl PixelRect {
-    /// Of a rectangle in points, on a screen of that size and as many pixels a point.
+    /// The pixels of `rect`, given in points, on a screen of that size and as many pixels a point.
     pub fn of(rect: &Rect, screen: &egui_wgpu::ScreenDescriptor) -> Self {
         let place =
             ViewportInPixels::from_points(rect, screen.pixels_per_point, screen.size_in_pixels);
@@ -24,7 +26,7 @@ impl PixelRect {
         Self { corner: [place.left_px, place.top_px], size: size.into() }
     }
 
-    /// What of it lies in `other`, from the corner of that.
+    /// The part of it that lies in `other`, from the corner of that.
     pub fn within(&self, other: &Self) -> Self {
         let corner = IVec2::from(self.corner) - IVec2::from(other.corner);
         let first = corner.max(IVec2::ZERO).as_uvec2().min(other.size);
@@ -49,9 +51,9 @@ impl GpuCanvas {
         view: &wgpu::Buffer,
     ) -> Self {
         let usage = wgpu::TextureUsages::RENDER_ATTACHMENT;
-        let texture = super::texture(device, "canvas", (size, format), usage);
+        let texture = texture(device, "canvas", (size, format), usage);
         let target = texture.create_view(&wgpu::TextureViewDescriptor::default());
-        let bindings = super::bind(device, layout, view, &target);
+        let bindings = bind(device, layout, view, &target);
         Self { size, target, bindings }
     }
 
@@ -60,7 +62,7 @@ impl GpuCanvas {
         self.size == size
     }
 
-    /// What copies it to the window.
+    /// The bindings that copy it to the window.
     pub fn bindings(&self) -> &wgpu::BindGroup {
         &self.bindings
     }

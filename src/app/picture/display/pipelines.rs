@@ -2,10 +2,10 @@
 //! every branch for every pixel, so that a curve that is not shown would cost as much as the one
 //! that is: what is the same for a whole picture is settled when its pipeline is made.
 
-use super::Look;
+use crate::app::picture::look::Look;
 use crate::image::tone::{Channel, ToneCurve};
 
-/// What is settled for a whole picture.
+/// The choices settled for a whole picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Variant {
     /// How numbers become light, as the shader numbers it.
@@ -44,12 +44,12 @@ pub(super) fn has_grid(step: f32) -> bool {
     step <= GRID_FROM
 }
 
-/// What the shader calls the ramp.
+/// The shader's number of the ramp.
 const RAMP: u32 = 2;
-/// What the shader calls light that is coded already.
+/// The shader's number of light that is coded already.
 const CODED: u32 = 4;
 
-/// What the shader calls a curve.
+/// The shader's number of a curve.
 fn curve_index(curve: ToneCurve) -> u32 {
     match curve {
         ToneCurve::Linear => 0,
@@ -58,7 +58,7 @@ fn curve_index(curve: ToneCurve) -> u32 {
     }
 }
 
-/// What the shader calls a channel.
+/// The shader's number of a channel.
 fn channel_index(channel: Channel) -> u32 {
     match channel {
         Channel::Color => 0,

@@ -1,4 +1,4 @@
-//! What a drag of a handle does to a light.
+//! The effect of dragging a handle on a light.
 
 use egui::Pos2;
 use glam::Vec3A;

@@ -11,25 +11,25 @@ const ARM: f32 = 62.0;
 const ARROW: f32 = 110.0;
 /// Lines that a circle is drawn by.
 const CIRCLE: usize = 48;
-/// Of these, from the tip of a cone to its rim.
+/// The number of these lines from the tip of a cone to its rim.
 const RIBS: usize = 4;
 /// The widest cone that is drawn as one, in degrees.
 const WIDEST: f32 = 160.0;
 
-/// What can be taken hold of.
+/// A part that can be taken hold of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Handle {
     /// The light itself, moved in the plane of the picture.
     Center,
     /// The light along x, y or z.
     Axis(usize),
-    /// What a spot is aimed at.
+    /// The point that a spot is aimed at.
     Target,
     /// Where a sun's light comes from.
     Direction,
 }
 
-/// What a line belongs to.
+/// The part that a line belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum HandlePart {
     /// An axis of the world.
@@ -39,7 +39,7 @@ pub enum HandlePart {
 }
 
 impl Handle {
-    /// What screen readers call it.
+    /// Its name for screen readers.
     pub fn name(self) -> &'static str {
         match self {
             Self::Center => "Move light",
@@ -51,7 +51,7 @@ impl Handle {
         }
     }
 
-    /// What a drag of it does.
+    /// The effect of dragging it.
     pub fn help(self) -> &'static str {
         match self {
             Self::Center => "Drag to move the light parallel to the picture.",
@@ -61,7 +61,7 @@ impl Handle {
         }
     }
 
-    /// What the edit is called.
+    /// The name of the edit.
     pub fn edit(self) -> &'static str {
         match self {
             Self::Center | Self::Axis(_) => "move the light",
@@ -69,7 +69,7 @@ impl Handle {
         }
     }
 
-    /// What it is drawn as.
+    /// The shape that it is drawn as.
     pub fn part(self) -> HandlePart {
         match self {
             Self::Axis(axis) => HandlePart::Axis(axis),

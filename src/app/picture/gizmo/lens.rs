@@ -3,16 +3,16 @@
 use egui::Pos2;
 use glam::{UVec2, Vec2, Vec3A};
 
-use crate::app::picture::viewport::View;
+use crate::app::picture::view::View;
 use crate::math::Ray;
 use crate::transport::camera::Camera;
 
-/// What is nearer than this, in lengths of the world, is not seen.
+/// Points nearer than this, in lengths of the world, are not seen.
 const NEAR: f32 = 1e-4;
 
 /// A camera and where its picture lies in the window.
 pub struct Lens {
-    /// What takes the picture.
+    /// The camera that takes the picture.
     pub camera: Camera,
     /// Where the picture lies.
     pub view: View,

@@ -1,0 +1,57 @@
+//! Which data of a picture is shown, and how.
+
+use crate::image::ramp::Scale;
+use crate::image::tone::Tone;
+use crate::render::Picture;
+
+/// The data of a picture that is shown, and how.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Look {
+    /// Its light, exposed and curved.
+    Picture(Tone),
+    /// A layer of light in its place.
+    Light(Tone),
+    /// A layer of numbers, on this scale.
+    Numbers(Scale),
+}
+
+/// Which data of a picture is on the graphics card.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TextureData {
+    /// The linear light of the picture itself.
+    Pixels,
+    /// The linear light of its layer.
+    Light,
+    /// The numbers of its layer.
+    Numbers,
+}
+
+impl Look {
+    /// The data that this look needs on the graphics card.
+    pub fn source(self) -> TextureData {
+        match self {
+            Self::Picture(_) => TextureData::Pixels,
+            Self::Light(_) => TextureData::Light,
+            Self::Numbers(_) => TextureData::Numbers,
+        }
+    }
+}
+
+impl TextureData {
+    /// The texture format that holds one pixel.
+    pub fn format(self) -> wgpu::TextureFormat {
+        match self {
+            Self::Pixels | Self::Light => wgpu::TextureFormat::Rgba32Float,
+            Self::Numbers => wgpu::TextureFormat::R32Float,
+        }
+    }
+
+    /// The linear RGBA of all pixels of `picture`; empty for numbers.
+    pub fn light(self, picture: &Picture) -> &[[f32; 4]] {
+        match self {
+            Self::Pixels => &picture.pixels,
+            Self::Light => &picture.layer.light,
+            Self::Numbers => &[],
+        }
+    }
+}

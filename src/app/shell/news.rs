@@ -1,0 +1,93 @@
+//! Takes in what threads and the desktop have brought since the last frame.
+
+use std::path::Path;
+
+use egui::Context;
+
+use super::app::App;
+use super::preferences::full_name;
+use crate::app::jobs::dialogs::DialogAnswer;
+use crate::app::jobs::live_render::News;
+use crate::app::picture::gizmo::Gizmo;
+use crate::app::ui::notices::{Level, Notice, Notices};
+
+impl App {
+    pub(super) fn take_in(&mut self, ctx: &Context, news: Vec<News>) {
+        for item in news {
+            match item {
+                News::Opened { source, settings, notes, reopened } => {
+                    self.opened.notes = notes;
+                    self.unsaved.opened(&source, &settings);
+                    self.gizmo = Gizmo::default();
+                    self.editor.open(*settings, reopened.is_some());
+                    self.viewport.zoom = Default::default();
+                    self.sweep.forget();
+                    self.notices = Notices::default();
+                    self.note_opened_file(&source);
+                    self.opened.source = self.name_of(source);
+                    self.compare.versus = None;
+                    self.compare.region.remove();
+                    if let Err(error) =
+                        self.compare.reference.open(ctx, &full_name(&self.opened.source))
+                    {
+                        self.notices.failed(error.to_string());
+                    }
+                    if let Some(Notice { level, text }) = reopened {
+                        let text = format!("{}: {text}", self.opened.title());
+                        self.notices.push(Notice { level, text });
+                    }
+                }
+                News::Failed(text) => self.notices.failed(text),
+                News::Refused(text) => self.notices.refused(text),
+                News::Accepted => self.notices.clear(Level::Refused),
+                News::Started(generation) => self.note_start(generation),
+            }
+        }
+    }
+
+    /// Takes in what other threads and the desktop have brought since the last frame.
+    pub(super) fn take_in_arrivals(&mut self, ctx: &Context) {
+        if let (Some(stats), Some(picture)) = (&mut self.stats, self.engine.picture()) {
+            stats.shown(picture.generation);
+        }
+        for (path, result) in self.files.saver.poll() {
+            self.unsaved.written(&path, result.is_ok());
+            match result {
+                Ok(()) => self.notices.done(format!("Saved {}", path.display())),
+                Err(error) => self.notices.failed(error.to_string()),
+            }
+        }
+        if let Some(answer) = self.files.poll() {
+            match answer {
+                DialogAnswer::Chosen(purpose, path) => self.take_path(ctx, purpose, path),
+                DialogAnswer::Unavailable(purpose) => self.ask_typed(purpose),
+                DialogAnswer::Cancelled => {}
+            }
+        }
+        let dropped = ctx.input(|input| input.raw.dropped_files.last().cloned());
+        if let Some(file) = dropped {
+            self.take_dropped(ctx, file.path());
+        }
+    }
+
+    /// Notes the file that was opened, for the next run too. Snapshots have their strip.
+    fn note_opened_file(&mut self, source: &str) {
+        if self.snapshots.name_of(Path::new(source)).is_some() {
+            return;
+        }
+        self.preferences.note(source);
+        if let Err(error) = self.write_preferences() {
+            self.notices.failed(error.to_string());
+        }
+    }
+
+    fn note_start(&mut self, generation: u64) {
+        if let Some(stats) = &mut self.stats {
+            stats.started(generation);
+        }
+        // Whoever asks for another picture wants to see it; beside a snapshot it is seen already.
+        if self.compare.versus.is_none() {
+            self.snapshots.strip.show(None);
+        }
+    }
+}

@@ -1,0 +1,27 @@
+//! The time from frame to frame.
+
+use std::time::{Duration, Instant};
+
+/// Keeps frames apart where drawing them takes the cores from the render.
+#[derive(Debug)]
+pub struct FramePace {
+    /// The shortest time from frame to frame; `None`: frames come as they are asked for.
+    shortest: Option<Duration>,
+    /// When the last frame began.
+    last: Option<Instant>,
+}
+
+impl FramePace {
+    /// A pace with at least `shortest` from frame to frame.
+    pub fn new(shortest: Option<Duration>) -> Self {
+        Self { shortest, last: None }
+    }
+
+    /// Waits until the next frame may begin.
+    pub fn keep(&mut self) {
+        if let (Some(shortest), Some(last)) = (self.shortest, self.last) {
+            std::thread::sleep(shortest.saturating_sub(last.elapsed()));
+        }
+        self.last = Some(Instant::now());
+    }
+}
