@@ -30,7 +30,8 @@ pub struct PathSample {
     pub depth: Option<f32>,
     /// Tentative collisions of all walks of the path, and steps of ray marching.
     pub tracking_steps: u32,
-    /// Whether the path was cut, at [`path::GUARD`] events or [`tracking::MOST_COLLISIONS`].
+    /// Whether the path was cut, at [`path::GUARD`](super::path::GUARD) events or
+    /// [`MOST_COLLISIONS`] collisions.
     pub guard_hit: bool,
 }
 

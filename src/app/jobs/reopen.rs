@@ -154,7 +154,7 @@ mod tests {
         let Notice { level, text } = reopened.notice;
         assert_eq!(level, Level::Failed);
         let theirs = format!("the snapshot has path version {}", PATH_VERSION + 1);
-        assert!(text.contains("rendered anew") && text.contains(&theirs), "{text}");
+        assert!(text.contains("from the start") && text.contains(&theirs), "{text}");
     }
 
     #[test]
