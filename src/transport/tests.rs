@@ -84,7 +84,7 @@ fn setting_up_a_frame_can_be_given_up_anywhere() {
     let scene = Arc::new(Scene::of_text(SCENE));
     let probes = prepare::probes(&scene, NO_PROGRESS).unwrap().unwrap();
     let leaves = probes.leaves().len() as u64;
-    check_giving_up("probes", probes.len() as u64 + 4 * leaves + 16384, 0, |progress| {
+    check_giving_up("probes", probes.len() as u64 + 8 * leaves + 256 + 16384, 0, |progress| {
         prepare::probes(&scene, progress)
     });
     let probes = Some(Arc::new(probes));

@@ -205,21 +205,32 @@ fn what_fails_at_the_end_is_saved_elsewhere() {
 #[test]
 fn what_has_lost_its_folder_is_saved_elsewhere() {
     use std::process::{Command, Stdio};
+    use std::time::Duration;
+
     let place = Place::new();
     std::fs::create_dir(place.path("gone")).unwrap();
     assert!(Command::new("mkfifo").arg(place.path("pipe.npy")).status().unwrap().success());
-    let child = Command::new(env!("CARGO_BIN_EXE_flambeau"))
+    let mut child = Command::new(env!("CARGO_BIN_EXE_flambeau"))
         .current_dir(place.0.path())
         .args(["render", "scene.toml", "--spp", "1", "--size", "200x150"])
         .args(["-o", "pipe.npy", "-o", "gone/out.npy"])
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    // More than a pipe holds.
-    let mut pipe = std::fs::File::open(place.path("pipe.npy")).unwrap();
-    std::fs::remove_dir(place.path("gone")).unwrap();
-    let mut picture = Vec::new();
-    std::io::Read::read_to_end(&mut pipe, &mut picture).unwrap();
+    let (sender, read) = std::sync::mpsc::channel();
+    let (pipe, gone) = (place.path("pipe.npy"), place.path("gone"));
+    std::thread::spawn(move || {
+        // Waits until the picture is written, which is larger than a pipe holds.
+        let mut pipe = std::fs::File::open(pipe).unwrap();
+        std::fs::remove_dir(gone).unwrap();
+        let mut picture = Vec::new();
+        std::io::Read::read_to_end(&mut pipe, &mut picture).unwrap();
+        sender.send(picture).unwrap();
+    });
+    let Ok(picture) = read.recv_timeout(Duration::from_secs(60)) else {
+        child.kill().unwrap();
+        panic!("nothing came through the pipe");
+    };
     let output = child.wait_with_output().unwrap();
     let stderr = String::from_utf8_lossy(&output.stderr);
     assert_eq!(output.status.code(), Some(1), "{stderr}");
