@@ -14,7 +14,7 @@ use flambeau::{
     transport::{
         Scene, shadow,
         strategy::{Advanced, Preset, Strategy, Tracker, TransmittanceEstimator},
-        tracking::{self, Event},
+        tracking::{decomposition, event::Event, scattering},
     },
 };
 use glam::{UVec2, Vec3A};
@@ -171,9 +171,9 @@ fn flights(name: &str, scene: &Scene) {
         let first = rng.exponential();
         let flight = match strategy.advanced.tracker {
             Tracker::Decomposition => {
-                tracking::scatter_by_decomposition(medium, strategy, Rgb::ONE, first, rng)
+                decomposition::scatter(medium, strategy, Rgb::ONE, first, rng)
             }
-            _ => tracking::scatter(medium, strategy, Rgb::ONE, first, rng),
+            _ => scattering::scatter(medium, strategy, Rgb::ONE, first, rng),
         };
         let scattered = matches!(flight.event, Event::Scattered { .. });
         (if scattered { flight.weight } else { Rgb::ZERO }, flight.collisions)

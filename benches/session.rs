@@ -45,7 +45,7 @@ impl Window {
         let scene =
             Arc::new(flambeau::scene::assemble(&self.settings, &self.cache, NO_PROGRESS).unwrap());
         self.session.start(Request {
-            sampler: Arc::new(Frame::new(scene, SIZE, 0)),
+            sampler: Arc::new(Frame::new(scene, SIZE, 0, NO_PROGRESS).unwrap()),
             size: SIZE,
             spp: 0,
             generation: self.generation,

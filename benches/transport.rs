@@ -10,7 +10,7 @@ use flambeau::{
     math::{Aabb, PathRng, Ray},
     scene::{self, Overrides, VolumeCache},
     transport::{
-        Frame, PathSample, PixelSampler, Scene, shadow,
+        PathSample, PreparedFrame, Scene, shadow,
         strategy::{Preset, Strategy, TransmittanceEstimator},
     },
 };
@@ -104,7 +104,7 @@ fn light_tree_sample(bencher: Bencher, count: u32) {
 #[divan::bench(args = ["baseline", "full"])]
 fn path_collisions(bencher: Bencher, preset: &str) {
     let scene = Arc::new(explosion(preset.parse().unwrap()));
-    let frame = Frame::new(scene, UVec2::splat(SIDE), 0);
+    let frame = PreparedFrame::new(scene, UVec2::splat(SIDE), 0, NO_PROGRESS).unwrap();
     let paths = || {
         (0..SIDE * SIDE).fold(0u64, |sum, i| {
             let sample: PathSample = frame.sample(UVec2::new(i % SIDE, i / SIDE), 0);

@@ -98,3 +98,11 @@ pub type Progress<'a> = &'a (dyn Fn(f32) -> bool + Sync);
 
 /// A [`Progress`] that ignores the fraction and never cancels.
 pub const NO_PROGRESS: Progress<'static> = &|_| true;
+
+/// Tells `progress` that a `fraction` in 0..=1 of the work is done.
+///
+/// # Errors
+/// [`Error::Cancelled`] where it says to stop.
+pub fn report(progress: Progress, fraction: f32) -> Result<()> {
+    if progress(fraction) { Ok(()) } else { Err(Error::Cancelled) }
+}

@@ -1,4 +1,4 @@
-//! Numbers as people write them: with the digits that count.
+//! Numbers as people write them: with the digits that count. One function for each way of writing.
 
 /// `value` rounded to so many digits that count, as short as it can be written.
 pub fn rounded(value: f64, digits: i32) -> String {
@@ -12,9 +12,39 @@ pub fn rounded(value: f64, digits: i32) -> String {
     if (1e-5..1e7).contains(&value.abs()) { value.to_string() } else { format!("{value:.1e}") }
 }
 
+/// One part of `factor` parts, with two digits that count: 1/38.
+pub fn one_part_of(factor: f64) -> String {
+    format!("1/{}", rounded(factor, 2))
+}
+
+/// A size in memory: 12.3 MiB.
+pub fn mebibytes(bytes: usize) -> String {
+    format!("{:.1} MiB", bytes as f64 / f64::from(1 << 20))
+}
+
+/// A number of samples a pixel that goes up while one looks: 12.3 spp.
+pub fn samples_per_pixel(samples: f64) -> String {
+    format!("{samples:.1} spp")
+}
+
+/// The nearest of the numbers that one uses for rough figures: 1, 1.2, 1.5, 2, 2.5, 3, 4, 5, 6 or 8
+/// times a power of ten. The value must be above zero.
+pub fn rough(value: f64) -> f64 {
+    const STEPS: [f64; 10] = [1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0];
+    let decade = 10_f64.powf(value.log10().floor());
+    let distance = |candidate: &f64| (candidate / value).ln().abs();
+    let candidates = STEPS.into_iter().chain([10.0]).map(|step| step * decade);
+    candidates.min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(value)
+}
+
 /// A share in percent, with two digits that count.
 pub fn percent(share: f64) -> String {
     format!("{} %", rounded(100.0 * share, 2))
+}
+
+/// `value` to two digits, as one would type it.
+pub fn two_digits(value: f32) -> f32 {
+    format!("{value:.1e}").parse().unwrap_or(value)
 }
 
 #[cfg(test)]
@@ -27,5 +57,26 @@ mod tests {
         assert_eq!([1234.0, -0.000_12, 99.6].map(|x| rounded(x, 2)), ["1200", "-0.00012", "100"]);
         assert_eq!(rounded(1.234e-9, 3), "1.2e-9");
         assert_eq!((percent(0.018_34), percent(12.0)), ("1.8 %".to_owned(), "1200 %".to_owned()));
+    }
+
+    #[test]
+    fn numbers_are_rounded_as_typed() {
+        assert_eq!(two_digits(12.345), 12.0);
+        assert_eq!(two_digits(0.034_56), 0.035);
+        assert_eq!(two_digits(1234.0), 1200.0);
+    }
+
+    #[test]
+    fn rough_numbers_are_round_in_any_decade() {
+        let nearest = [38.2, 14.0, 0.9, 7.1, 0.001_3].map(rough);
+        let expected = [40.0, 15.0, 1.0, 8.0, 0.0012];
+        for (rough, expected) in std::iter::zip(nearest, expected) {
+            assert!((rough / expected - 1.0).abs() < 1e-12, "{rough} for {expected}");
+        }
+        assert_eq!(one_part_of(38.2), "1/38");
+        assert_eq!(
+            (mebibytes(3 << 19), samples_per_pixel(2.5)),
+            ("1.5 MiB".to_owned(), "2.5 spp".to_owned())
+        );
     }
 }

@@ -16,6 +16,7 @@
 //! | [`transport`] | how light moves: read [`transport::path`] first, then [`transport::tracking`] |
 //! | [`light`], [`surface`], [`volume`] | what emits, what reflects, what fills space |
 //! | [`sampling`], [`math`] | samplers with their densities, MIS weights; rays, boxes, random numbers |
+//! | [`format`](mod@format) | numbers in words |
 //! | [`files`] | writing a file whole or not at all, telling its states apart |
 //! | [`error`] | what can go wrong, in words |
 //!

@@ -14,7 +14,7 @@ use flambeau::render::{
     Film, FilmStats, Headless, Layer, Picture, RenderJob, Request, Resume, Session, render_headless,
 };
 use flambeau::scene;
-use flambeau::transport::{Frame, PathSample, PixelSampler};
+use flambeau::transport::{Frame, PathSample, PixelSampler, SampleNumber};
 use glam::UVec2;
 
 const SIZE: UVec2 = UVec2::new(75, 50);
@@ -57,7 +57,7 @@ impl Counting {
 }
 
 impl PixelSampler for Counting {
-    fn sample(&self, pixel: UVec2, sample: u32) -> PathSample {
+    fn sample(&self, pixel: UVec2, number: SampleNumber) -> PathSample {
         let call = self.calls.fetch_add(1, Ordering::SeqCst) + 1;
         if call == self.limit {
             self.interrupt.store(true, Ordering::SeqCst);
@@ -66,7 +66,7 @@ impl PixelSampler for Counting {
         while call > self.limit && !self.interrupt.load(Ordering::SeqCst) {
             std::thread::yield_now();
         }
-        path(pixel, sample)
+        path(pixel, number.index())
     }
 }
 
@@ -180,7 +180,7 @@ fn the_reported_variance_is_that_between_seeds() {
     let (mut reported, mut means) = (0.0, Vec::new());
     for seed in 0..seeds {
         let job = RenderJob {
-            sampler: Arc::new(Frame::new(Arc::clone(&scene), size, seed)),
+            sampler: Arc::new(Frame::new(Arc::clone(&scene), size, seed, NO_PROGRESS).unwrap()),
             size,
             limits: Limits { spp, seconds: None },
             resume: None,
@@ -253,13 +253,13 @@ impl Shade {
 }
 
 impl PixelSampler for Shade {
-    fn sample(&self, pixel: UVec2, sample: u32) -> PathSample {
+    fn sample(&self, pixel: UVec2, number: SampleNumber) -> PathSample {
         self.calls.fetch_add(1, Ordering::SeqCst);
         self.gate.pass();
         if !self.delay.is_zero() {
             std::thread::sleep(self.delay);
         }
-        assert_ne!(self.panic_at, Some((pixel, sample)), "a fault on purpose");
+        assert_ne!(self.panic_at, Some((pixel, number.index())), "a fault on purpose");
         PathSample {
             background: Rgb::splat(self.value),
             tracking_steps: STEPS,

@@ -1,4 +1,4 @@
-//! What each strategy brings: variance at equal samples and at equal time, scene by scene.
+//! The worth of each strategy: variance at equal samples and at equal time, scene by scene.
 //!
 //! `cargo bench --bench noise -- [TABLE] [SCENE ...] [--quick]` prints a table per scene with one
 //! row per strategy: toggle upon toggle, or with `modes` the modes of the majorant boost by their
@@ -10,12 +10,14 @@ mod measure;
 mod rows;
 mod scenes;
 mod table;
+mod which;
 
 use clap::Parser;
 
 use measure::Plan;
-use rows::{Row, Table};
+use rows::Row;
 use scenes::BenchScene;
+use which::Table;
 
 #[derive(Parser)]
 #[command(name = "noise", about = "Variance and cost of each strategy, scene by scene")]

@@ -80,10 +80,9 @@ pub fn measure(scene: &Arc<Scene>, plan: &Plan, left_out: Option<([f32; 2], f32)
     let render = if plan.film { with_film } else { bare };
     // What is first touched or learned by the first picture is no part of the steady state.
     let start = process_seconds();
-    let probes = Probes::new(scene).map(Arc::new);
-    let first = Frame::with_probes(scene.clone(), UVec2::splat(SIDE), u64::MAX, probes);
-    // The second sample waits for the pilot.
-    first.sample(UVec2::ZERO, 1);
+    let size = UVec2::splat(SIDE);
+    let first =
+        PreparedFrame::new(scene.clone(), size, u64::MAX, NO_PROGRESS).expect("nothing cancels it");
     let setup = (process_seconds() - start) / THREADS;
     let frame = |seed| first.with_seed(seed);
     render(first.clone(), plan.spp.min(4));
@@ -151,7 +150,7 @@ fn pixel(index: u32) -> UVec2 {
 }
 
 /// By a loop over the pixels that keeps nothing but sums.
-fn bare(frame: Frame, spp: u32) -> Picture {
+fn bare(frame: PreparedFrame, spp: u32) -> Picture {
     let (pixels, steps): (Vec<f64>, Vec<u64>) = (0..SIDE * SIDE)
         .into_par_iter()
         .map(|index| {
@@ -166,7 +165,7 @@ fn bare(frame: Frame, spp: u32) -> Picture {
 }
 
 /// As the command line renders.
-fn with_film(frame: Frame, spp: u32) -> Picture {
+fn with_film(frame: PreparedFrame, spp: u32) -> Picture {
     let job = RenderJob {
         sampler: Arc::new(frame),
         size: UVec2::splat(SIDE),

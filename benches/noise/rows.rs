@@ -6,31 +6,7 @@ use flambeau::transport::strategy::{
 };
 
 use super::scenes::BenchScene;
-
-/// What is compared.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Table {
-    /// Toggle upon toggle.
-    Toggles,
-    /// Modes of the majorant boost by their amounts.
-    Modes,
-    /// Where rays scatter: by chance, by probes, by both.
-    Distances,
-    /// Estimators of transmittance, and trackers.
-    Walks,
-}
-
-impl Table {
-    /// The table that a word of the command line asks for.
-    pub fn named(word: &str) -> Option<Self> {
-        match word {
-            "modes" => Some(Self::Modes),
-            "distances" => Some(Self::Distances),
-            "walks" => Some(Self::Walks),
-            _ => None,
-        }
-    }
-}
+use super::which::Table;
 
 /// The rows of a table for a scene.
 pub fn of(table: Table, scene: &BenchScene) -> Vec<Row> {
@@ -44,9 +20,9 @@ pub fn of(table: Table, scene: &BenchScene) -> Vec<Row> {
 
 /// A row of a table.
 pub struct Row {
-    /// What it is called.
+    /// Its name.
     pub name: String,
-    /// What is on.
+    /// The strategy that is measured.
     pub strategy: Strategy,
 }
 
@@ -112,7 +88,7 @@ fn modes() -> Vec<Row> {
     rows
 }
 
-/// Distances by chance, by the probes, by both; then without or with more of what else guides.
+/// Distances by null-collision sampling, by the probes, by both; then without or with more of what else guides.
 fn distances() -> Vec<Row> {
     let full = Preset::Full.strategy();
     let but = |name, change: fn(&mut Advanced)| {

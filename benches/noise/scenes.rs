@@ -1,4 +1,4 @@
-//! What is rendered: the scene files beside this one, those of other renderers, a shipped one.
+//! The scenes that are rendered: the scene files beside this one, those of other renderers, a shipped one.
 
 use std::path::{Path, PathBuf};
 
@@ -8,14 +8,14 @@ use flambeau::{
     transport::Scene,
 };
 
-use super::rows::Table;
+use super::which::Table;
 
 /// A scene of the tables.
 #[derive(Clone, Copy)]
 pub struct BenchScene {
     /// Its name in the tables and for filters.
     pub name: &'static str,
-    /// What it is there for.
+    /// Its purpose.
     pub shows: &'static str,
     /// The tables it is in.
     pub tables: &'static [Table],

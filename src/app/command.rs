@@ -1,13 +1,14 @@
-//! Every command of the window: its text, its tooltip and its shortcut. Menus, buttons, keys and
-//! the help page all read this list.
+//! Every command of the window: its text, its tooltip and its shortcut. Menus, buttons, keys, the
+//! palette and the help page all read them here.
 
 use egui::{Context, Key, KeyboardShortcut, Modifiers};
+use strum::{EnumIter, IntoEnumIterator};
 
 use crate::transport::toggle::Toggle;
 
-/// Something that the user can ask for without a value.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[allow(missing_docs, reason = "`text` and `tooltip` say what each is")]
+/// Something that the user can ask for without a value. The help page lists them in this order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, EnumIter)]
+#[allow(missing_docs, reason = "the text and the tooltip of `spec` say what each is")]
 pub enum Command {
     Open,
     OpenPath,
@@ -19,12 +20,8 @@ pub enum Command {
     Redo,
     PauseResume,
     Restart,
-    EmissionDecoupling,
-    EmissionRatioTracking,
-    MajorantBoost,
-    FireAsLight,
-    /// Switch the strategy `probe_mis`.
-    Probes,
+    /// Switch a sampling strategy on or off.
+    Toggle(Toggle),
     FrameVolume,
     FitPicture,
     ZoomToPixels,
@@ -41,7 +38,6 @@ pub enum Command {
     NormalSize,
     ResetWindow,
     Palette,
-    /// Show what to begin with.
     Start,
     Shortcuts,
     Compare,
@@ -53,12 +49,10 @@ pub enum Command {
     CompareAsB,
     SaveComparison,
     Rectangle,
-    /// Give the rectangle all samples.
     SamplesHere,
     LoadReference,
     PictureAsReference,
     RemoveReference,
-    /// Try every strategy on the shot.
     Sweep,
     KeepSnapshot,
     PreviousSnapshot,
@@ -72,289 +66,339 @@ pub enum Command {
 
 use Command as C;
 
-impl Command {
-    /// All of them, in the order of the help page.
-    pub const ALL: [Self; 55] = [
-        C::Open,
-        C::OpenPath,
-        C::SaveExr,
-        C::SavePng,
-        C::SaveScene,
-        C::Quit,
-        C::Undo,
-        C::Redo,
-        C::PauseResume,
-        C::Restart,
-        C::EmissionDecoupling,
-        C::EmissionRatioTracking,
-        C::MajorantBoost,
-        C::FireAsLight,
-        C::Probes,
-        C::FrameVolume,
-        C::FitPicture,
-        C::ZoomToPixels,
-        C::ExposureUp,
-        C::ExposureDown,
-        C::AutoExposure,
-        C::NextToneCurve,
-        C::FalseColor,
-        C::GoToPicture,
-        C::FoldPanels,
-        C::FullScreen,
-        C::Larger,
-        C::Smaller,
-        C::NormalSize,
-        C::ResetWindow,
-        C::Palette,
-        C::Start,
-        C::Shortcuts,
-        C::Compare,
-        C::SwitchSide,
-        C::SwapSides,
-        C::CopySide,
-        C::NextLayout,
-        C::CompareAsA,
-        C::CompareAsB,
-        C::SaveComparison,
-        C::Rectangle,
-        C::SamplesHere,
-        C::LoadReference,
-        C::PictureAsReference,
-        C::RemoveReference,
-        C::Sweep,
-        C::KeepSnapshot,
-        C::PreviousSnapshot,
-        C::NextSnapshot,
-        C::LivePicture,
-        C::ContinueSnapshot,
-        C::DeleteSnapshot,
-        C::UndoDelete,
-        C::FoldStrip,
-    ];
+/// How a command is named, explained and asked for by the keyboard.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spec {
+    /// The name in menus, the palette and the help page.
+    pub text: &'static str,
+    /// A sentence or two about the effect.
+    pub tooltip: &'static str,
+    /// The key, which no other command has.
+    pub shortcut: KeyboardShortcut,
+}
 
-    /// What menus and buttons call it.
-    pub fn text(self) -> &'static str {
-        match self {
-            C::Open => "Open…",
-            C::OpenPath => "Open path…",
-            C::SaveExr => "Save EXR…",
-            C::SavePng => "Save PNG…",
-            C::SaveScene => "Save scene as…",
-            C::Quit => "Quit",
-            C::Undo => "Undo",
-            C::Redo => "Redo",
-            C::PauseResume => "Pause or resume",
-            C::Restart => "Restart",
-            C::EmissionDecoupling => Toggle::EmissionDecoupling.name(),
-            C::EmissionRatioTracking => Toggle::EmissionRatioTracking.name(),
-            C::MajorantBoost => Toggle::MajorantBoost.name(),
-            C::FireAsLight => Toggle::FireAsLight.name(),
-            C::Probes => Toggle::Probes.name(),
-            C::FrameVolume => "Frame the volume",
-            C::FitPicture => "Fit the picture",
-            C::ZoomToPixels => "Zoom to pixels",
-            C::ExposureUp => "Exposure up",
-            C::ExposureDown => "Exposure down",
-            C::AutoExposure => "Expose for the picture",
-            C::NextToneCurve => "Next tone curve",
-            C::FalseColor => "False color",
-            C::GoToPicture => "Go to the picture",
-            C::FoldPanels => "Fold the panels",
-            C::FullScreen => "Picture on the full screen",
-            C::Larger => "Larger text",
-            C::Smaller => "Smaller text",
-            C::NormalSize => "Text of normal size",
-            C::ResetWindow => "Reset the window",
-            C::Palette => "All commands…",
-            C::Start => "Start with a scene",
-            C::Shortcuts => "Keys and mouse",
-            C::Compare => "Compare two strategies",
-            C::SwitchSide => "Edit the other side",
-            C::SwapSides => "Swap A and B",
-            C::CopySide => "Copy to the other side",
-            C::NextLayout => "Next view of A and B",
-            C::CompareAsA => "Compare snapshot as A",
-            C::CompareAsB => "Compare snapshot as B",
-            C::SaveComparison => "Save comparison as PNG…",
-            C::Rectangle => "Figures of a rectangle",
-            C::SamplesHere => "Samples only in the rectangle",
-            C::LoadReference => "Load reference…",
-            C::PictureAsReference => "Use picture as reference",
-            C::RemoveReference => "Remove the reference",
-            C::Sweep => "Try all strategies",
-            C::KeepSnapshot => "Keep snapshot",
-            C::PreviousSnapshot => "Previous snapshot",
-            C::NextSnapshot => "Next snapshot",
-            C::LivePicture => "Back to the live picture",
-            C::ContinueSnapshot => "Go on from the snapshot",
-            C::DeleteSnapshot => "Delete snapshot",
-            C::UndoDelete => "Undo delete",
-            C::FoldStrip => "Show or fold the strip",
-        }
+/// Ctrl, or Cmd on a Mac.
+const CTRL: Modifiers = Modifiers::COMMAND;
+const SHIFT: Modifiers = Modifiers::SHIFT;
+const PLAIN: Modifiers = Modifiers::NONE;
+const CTRL_SHIFT: Modifiers = Modifiers { shift: true, ..CTRL };
+const CTRL_ALT: Modifiers = Modifiers { alt: true, ..CTRL };
+
+impl Command {
+    /// Every command, the toggles one by one, in the order of the help page.
+    pub fn all() -> impl Iterator<Item = Self> {
+        Self::iter().flat_map(|command| match command {
+            Self::Toggle(_) => Toggle::all().map(Self::Toggle).collect(),
+            other => vec![other],
+        })
     }
 
-    /// What it does.
+    /// The name in menus, the palette and the help page.
+    pub fn text(self) -> &'static str {
+        self.spec().text
+    }
+
+    /// A sentence or two about the effect.
     pub fn tooltip(self) -> &'static str {
-        match self {
-            C::Open => {
-                "Open a scene (.toml) or a volume (.vdb), or go on from a snapshot (.exr). Files can \
-                 also be dropped on the window."
-            }
-            C::OpenPath => "Type the path of a scene, a volume or a snapshot, or builtin:NAME.",
-            C::SaveExr => "Save the picture as it is, linear and with its layers, as an EXR.",
-            C::SavePng => {
-                "Save the picture as you see it, with exposure, white balance and tone curve, as a PNG."
-            }
-            C::SaveScene => "Save every setting as a scene file that renders to the same picture.",
-            C::Quit => "Close the window.",
-            C::Undo => "Take the last edit back.",
-            C::Redo => "Make the edit that was taken back again.",
-            C::PauseResume => "Stop sampling and keep the picture, or go on where it stopped.",
-            C::Restart => "Throw the samples away and start again.",
-            C::EmissionDecoupling
-            | C::EmissionRatioTracking
-            | C::MajorantBoost
-            | C::FireAsLight
-            | C::Probes => {
-                "Switch this strategy on or off; the picture stays the same, its noise does not."
-            }
-            C::FrameVolume => "Move the camera so that all volumes are in the picture.",
-            C::FitPicture => "Show the whole picture.",
-            C::ZoomToPixels => "Zoom in until single pixels show, and back.",
-            C::ExposureUp => "Brighten the display by half a stop.",
-            C::ExposureDown => "Darken the display by half a stop.",
-            C::AutoExposure => "Expose so that the brightest parts just keep their color.",
-            C::NextToneCurve => "Go from one tone curve to the next: filmic, AgX, linear.",
-            C::FalseColor => "Show how many stops each pixel is from middle gray, or the picture.",
-            C::GoToPicture => "Give the picture the keyboard: arrows orbit, with Shift they pan.",
-            C::FoldPanels => "Hide the panels and give the picture the room, or bring them back.",
-            C::FullScreen => "Give the picture the whole screen, or bring menus and panels back.",
-            C::Larger => "Make text and controls larger; the picture keeps its pixels.",
-            C::Smaller => "Make text and controls smaller; the picture keeps its pixels.",
-            C::NormalSize => "Give text and controls the size that the screen asks for.",
-            C::ResetWindow => {
-                "Bring panels, text size and display back to the first start; all else stays."
-            }
-            C::Start => "Show the scenes that Flambeau brings along and the files of before.",
-            C::Palette => "Find a command by a few letters of its name and carry it out.",
-            C::Shortcuts => "Show every key and every move of the mouse.",
-            C::Compare => {
-                "Render the scene under two strategies, A and B, that share the machine fairly, or go \
-                 back to one."
-            }
-            C::SwitchSide => "Toggles and advanced choices act on the other side from now on.",
-            C::SwapSides => "Exchange A and B.",
-            C::CopySide => "Give the other side the strategy of the side that is edited.",
-            C::NextLayout => {
-                "Wipe, side by side, difference, noise, and the error where there is a reference."
-            }
-            C::CompareAsA => {
-                "Set the snapshot shown as A against the live picture as B. Nothing is rendered on \
-                 its side; the arrow keys go on to others."
-            }
-            C::CompareAsB => {
-                "Set the snapshot shown as B against the live picture as A. Nothing is rendered on \
-                 its side; the arrow keys go on to others."
-            }
-            C::SaveComparison => {
-                "Save the view of A and B as you see it, with names, legend and figures, as a PNG."
-            }
-            C::Rectangle => {
-                "Drag a rectangle over the picture: noise, errors and the comparison are told of it \
-                 alone too. Escape or a click on the picture takes it away."
-            }
-            C::SamplesHere => {
-                "Give the rectangle all the samples, so that it gets clean sooner, or all pixels \
-                 again, which catch up."
-            }
-            C::LoadReference => {
-                "Measure the picture, or A and B, against a picture without noise (.exr or .npy): \
-                 how far off, and where. Files can also be dropped on the window."
-            }
-            C::PictureAsReference => {
-                "Measure what is rendered from now on against the picture shown. Its own noise sets \
-                 the limit, so let it refine for long."
-            }
-            C::RemoveReference => "Measure against nothing any more.",
-            C::Sweep => {
-                "Try every strategy on this shot for a few seconds each and rank them: which to \
-                 leave on, what each toggle brings. The picture waits meanwhile."
-            }
-            C::KeepSnapshot => {
-                "Keep the picture as it is in the strip, with all that is needed to go on from it."
-            }
-            C::PreviousSnapshot => "Show the snapshot before, in place of the live picture.",
-            C::NextSnapshot => "Show the snapshot after, or the live picture behind the last.",
-            C::LivePicture => "Close what is in front, or show the picture being rendered again.",
-            C::ContinueSnapshot => "Open the scene of the snapshot shown and add samples to it.",
-            C::DeleteSnapshot => {
-                "Delete the snapshot shown. It can be undone until the program ends."
-            }
-            C::UndoDelete => "Bring the snapshot deleted last back.",
-            C::FoldStrip => "Show the strip of snapshots under the picture, or hide it.",
-        }
+        self.spec().tooltip
     }
 
     /// The key that asks for it.
     pub fn shortcut(self) -> KeyboardShortcut {
-        let (modifiers, key) = match self {
-            C::Open => (Modifiers::COMMAND, Key::O),
-            C::OpenPath => (Modifiers::COMMAND, Key::L),
-            C::SaveExr => (Modifiers::COMMAND, Key::S),
-            C::SavePng => (Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::S),
-            C::SaveScene => (Modifiers::COMMAND.plus(Modifiers::ALT), Key::S),
-            C::Quit => (Modifiers::COMMAND, Key::Q),
-            C::Undo => (Modifiers::COMMAND, Key::Z),
-            C::Redo => (Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Z),
-            C::PauseResume => (Modifiers::NONE, Key::Space),
-            C::Restart => (Modifiers::NONE, Key::R),
-            C::EmissionDecoupling => (Modifiers::NONE, Key::Num1),
-            C::EmissionRatioTracking => (Modifiers::NONE, Key::Num2),
-            C::MajorantBoost => (Modifiers::NONE, Key::Num3),
-            C::FireAsLight => (Modifiers::NONE, Key::Num4),
-            C::Probes => (Modifiers::NONE, Key::Num5),
-            C::FrameVolume => (Modifiers::NONE, Key::F),
-            C::FitPicture => (Modifiers::NONE, Key::Home),
-            C::ZoomToPixels => (Modifiers::NONE, Key::Z),
-            C::ExposureUp => (Modifiers::NONE, Key::E),
-            C::ExposureDown => (Modifiers::SHIFT, Key::E),
-            C::AutoExposure => (Modifiers::NONE, Key::A),
-            C::NextToneCurve => (Modifiers::NONE, Key::T),
-            C::FalseColor => (Modifiers::SHIFT, Key::T),
-            C::GoToPicture => (Modifiers::NONE, Key::F6),
-            C::FoldPanels => (Modifiers::NONE, Key::N),
-            C::FullScreen => (Modifiers::NONE, Key::F11),
-            C::Larger => (Modifiers::COMMAND, Key::Plus),
-            C::Smaller => (Modifiers::COMMAND, Key::Minus),
-            C::NormalSize => (Modifiers::COMMAND, Key::Num0),
-            C::ResetWindow => (Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::Num0),
-            C::Palette => (Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::P),
-            C::Start => (Modifiers::SHIFT, Key::F1),
-            C::Shortcuts => (Modifiers::NONE, Key::F1),
-            C::Compare => (Modifiers::NONE, Key::C),
-            C::SwitchSide => (Modifiers::NONE, Key::B),
-            C::SwapSides => (Modifiers::NONE, Key::X),
-            C::CopySide => (Modifiers::SHIFT, Key::X),
-            C::NextLayout => (Modifiers::NONE, Key::V),
-            C::CompareAsA => (Modifiers::SHIFT, Key::A),
-            C::CompareAsB => (Modifiers::SHIFT, Key::B),
-            C::SaveComparison => (Modifiers::COMMAND, Key::P),
-            C::Rectangle => (Modifiers::NONE, Key::M),
-            C::SamplesHere => (Modifiers::SHIFT, Key::M),
-            C::LoadReference => (Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::O),
-            C::PictureAsReference => (Modifiers::COMMAND, Key::K),
-            C::RemoveReference => (Modifiers::COMMAND.plus(Modifiers::SHIFT), Key::K),
-            C::Sweep => (Modifiers::SHIFT, Key::C),
-            C::KeepSnapshot => (Modifiers::NONE, Key::K),
-            C::PreviousSnapshot => (Modifiers::NONE, Key::ArrowLeft),
-            C::NextSnapshot => (Modifiers::NONE, Key::ArrowRight),
-            C::LivePicture => (Modifiers::NONE, Key::Escape),
-            C::ContinueSnapshot => (Modifiers::COMMAND, Key::Enter),
-            C::DeleteSnapshot => (Modifiers::NONE, Key::Delete),
-            C::UndoDelete => (Modifiers::COMMAND.plus(Modifiers::ALT), Key::Z),
-            C::FoldStrip => (Modifiers::SHIFT, Key::N),
+        self.spec().shortcut
+    }
+
+    /// Text, tooltip and shortcut.
+    #[allow(clippy::too_many_lines, reason = "a table with one row for each command")]
+    pub fn spec(self) -> Spec {
+        let (modifiers, key, text, tooltip) = match self {
+            C::Open => (
+                CTRL,
+                Key::O,
+                "Open…",
+                "Open a scene (.toml) or a volume (.vdb), or resume a snapshot (.exr). Files can \
+                 also be dropped on the window.",
+            ),
+            C::OpenPath => (
+                CTRL,
+                Key::L,
+                "Open path…",
+                "Type the path of a scene, a volume or a snapshot, or builtin:NAME for a scene \
+                 that comes with Flambeau.",
+            ),
+            C::SaveExr => (
+                CTRL,
+                Key::S,
+                "Save EXR…",
+                "Save the current picture, linear and with its layers, as an EXR that can be \
+                 resumed.",
+            ),
+            C::SavePng => (
+                CTRL_SHIFT,
+                Key::S,
+                "Save PNG…",
+                "Save the picture as displayed, with exposure, white balance and tone curve, as a \
+                 PNG.",
+            ),
+            C::SaveScene => (
+                CTRL_ALT,
+                Key::S,
+                "Save scene as…",
+                "Save all settings as a scene file that renders the same picture.",
+            ),
+            C::Quit => (CTRL, Key::Q, "Quit", "Close the window."),
+            C::Undo => (CTRL, Key::Z, "Undo", "Undo the last edit."),
+            C::Redo => (CTRL_SHIFT, Key::Z, "Redo", "Redo the edit that was undone last."),
+            C::PauseResume => (
+                PLAIN,
+                Key::Space,
+                "Pause or resume",
+                "Stop sampling and keep the picture, or continue where it stopped.",
+            ),
+            C::Restart => {
+                (PLAIN, Key::R, "Restart", "Discard all samples and render from the start.")
+            }
+            C::Toggle(toggle) => (
+                PLAIN,
+                key_of(toggle),
+                toggle.name(),
+                "Switch this strategy on or off. The picture converges to the same result; noise \
+                 and render time change.",
+            ),
+            C::FrameVolume => (
+                PLAIN,
+                Key::F,
+                "Frame the volumes",
+                "Move the camera so that all volumes fit into the picture.",
+            ),
+            C::FitPicture => {
+                (PLAIN, Key::Home, "Fit the picture", "Zoom so that the whole picture is visible.")
+            }
+            C::ZoomToPixels => (
+                PLAIN,
+                Key::Z,
+                "Zoom to pixels",
+                "Zoom in until each pixel shows its values, or back out.",
+            ),
+            C::ExposureUp => (PLAIN, Key::E, "Exposure up", "Brighten the display by half a stop."),
+            C::ExposureDown => {
+                (SHIFT, Key::E, "Exposure down", "Darken the display by half a stop.")
+            }
+            C::AutoExposure => (
+                PLAIN,
+                Key::A,
+                "Auto exposure",
+                "Set the exposure so that the brightest parts just keep their color.",
+            ),
+            C::NextToneCurve => (
+                PLAIN,
+                Key::T,
+                "Next tone curve",
+                "Switch to the next tone curve: filmic, AgX, linear.",
+            ),
+            C::FalseColor => (
+                SHIFT,
+                Key::T,
+                "False color",
+                "Show in false color how many stops each pixel is from middle gray, or go back to \
+                 the picture.",
+            ),
+            C::GoToPicture => (
+                PLAIN,
+                Key::F6,
+                "Go to the picture",
+                "Move keyboard focus to the picture: arrow keys orbit, with Shift they pan.",
+            ),
+            C::FoldPanels => (
+                PLAIN,
+                Key::N,
+                "Show or hide the panels",
+                "Hide the panels to leave more room for the picture, or show them again.",
+            ),
+            C::FullScreen => (
+                PLAIN,
+                Key::F11,
+                "Full screen",
+                "Show nothing but the picture on the whole screen, or bring menus and panels back.",
+            ),
+            C::Larger => (
+                CTRL,
+                Key::Plus,
+                "Larger text",
+                "Make text and controls larger; the picture keeps its pixels.",
+            ),
+            C::Smaller => (
+                CTRL,
+                Key::Minus,
+                "Smaller text",
+                "Make text and controls smaller; the picture keeps its pixels.",
+            ),
+            C::NormalSize => (
+                CTRL,
+                Key::Num0,
+                "Normal text size",
+                "Set text and controls to the size that the screen asks for.",
+            ),
+            C::ResetWindow => (
+                CTRL_SHIFT,
+                Key::Num0,
+                "Reset the window",
+                "Set panels, text size and display back to their defaults. The scene stays as it \
+                 is.",
+            ),
+            C::Palette => (
+                CTRL_SHIFT,
+                Key::P,
+                "All commands…",
+                "Find a command by a few letters of its name and run it.",
+            ),
+            C::Start => (
+                SHIFT,
+                Key::F1,
+                "Start with a scene",
+                "Show the scenes that come with Flambeau and the recent files.",
+            ),
+            C::Shortcuts => (
+                PLAIN,
+                Key::F1,
+                "Keys and mouse",
+                "List all keyboard shortcuts and mouse gestures.",
+            ),
+            C::Compare => (
+                PLAIN,
+                Key::C,
+                "Compare two strategies",
+                "Render the scene with two strategies, A and B, with equal shares of the machine, \
+                 or end the comparison.",
+            ),
+            C::SwitchSide => (
+                PLAIN,
+                Key::B,
+                "Edit the other side",
+                "Let toggles and advanced settings act on the other side from now on.",
+            ),
+            C::SwapSides => (PLAIN, Key::X, "Swap A and B", "Exchange A and B."),
+            C::CopySide => (
+                SHIFT,
+                Key::X,
+                "Copy to the other side",
+                "Copy the strategy of the edited side to the other side.",
+            ),
+            C::NextLayout => (
+                PLAIN,
+                Key::V,
+                "Next view of A and B",
+                "Switch to the next view: wipe, side by side, difference, noise, and error where \
+                 there is a reference.",
+            ),
+            C::CompareAsA => (
+                SHIFT,
+                Key::A,
+                "Compare snapshot as A",
+                "Compare the snapshot shown, as A, with the live picture, as B. The snapshot is \
+                 not rendered any further; the arrow keys step to others.",
+            ),
+            C::CompareAsB => (
+                SHIFT,
+                Key::B,
+                "Compare snapshot as B",
+                "Compare the snapshot shown, as B, with the live picture, as A. The snapshot is \
+                 not rendered any further; the arrow keys step to others.",
+            ),
+            C::SaveComparison => (
+                CTRL,
+                Key::P,
+                "Save comparison as PNG…",
+                "Save the view of A and B as displayed, with names, legend and figures, as a PNG.",
+            ),
+            C::Rectangle => (
+                PLAIN,
+                Key::M,
+                "Measure a region",
+                "Drag a region over the picture: its noise, errors and comparison are shown as \
+                 well. Escape or a click on the picture removes it.",
+            ),
+            C::SamplesHere => (
+                SHIFT,
+                Key::M,
+                "Render region only",
+                "Give all samples to the region, so that it converges sooner, or to all pixels \
+                 again; the others then catch up.",
+            ),
+            C::LoadReference => (
+                CTRL_SHIFT,
+                Key::O,
+                "Load reference…",
+                "Measure the picture, or A and B, against a converged picture (.exr or .npy): how \
+                 far off, and where. Files can also be dropped on the window.",
+            ),
+            C::PictureAsReference => (
+                CTRL,
+                Key::K,
+                "Use picture as reference",
+                "Measure against the current picture from now on. Its own noise limits what can be \
+                 measured, so let it converge first.",
+            ),
+            C::RemoveReference => (
+                CTRL_SHIFT,
+                Key::K,
+                "Remove the reference",
+                "Stop measuring against the reference.",
+            ),
+            C::Sweep => (
+                SHIFT,
+                Key::C,
+                "Sweep all strategies",
+                "Try every strategy on this shot for a few seconds each and rank them: which to \
+                 leave on, and what each toggle gains. Rendering pauses meanwhile.",
+            ),
+            C::KeepSnapshot => (
+                PLAIN,
+                Key::K,
+                "Keep snapshot",
+                "Keep the current picture as a snapshot that can be compared and resumed later.",
+            ),
+            C::PreviousSnapshot => (
+                PLAIN,
+                Key::ArrowLeft,
+                "Previous snapshot",
+                "Show the previous snapshot in place of the live picture.",
+            ),
+            C::NextSnapshot => (
+                PLAIN,
+                Key::ArrowRight,
+                "Next snapshot",
+                "Show the next snapshot, or the live picture after the last.",
+            ),
+            C::LivePicture => (
+                PLAIN,
+                Key::Escape,
+                "Back to the live picture",
+                "Close what is open in front, or show the live picture again.",
+            ),
+            C::ContinueSnapshot => (
+                CTRL,
+                Key::Enter,
+                "Resume from snapshot",
+                "Open the scene of the snapshot shown and add samples to it.",
+            ),
+            C::DeleteSnapshot => (
+                PLAIN,
+                Key::Delete,
+                "Delete snapshot",
+                "Delete the snapshot shown. This can be undone until Flambeau is closed.",
+            ),
+            C::UndoDelete => {
+                (CTRL_ALT, Key::Z, "Undo delete", "Restore the snapshot that was deleted last.")
+            }
+            C::FoldStrip => (
+                SHIFT,
+                Key::N,
+                "Show or hide snapshots",
+                "Show the strip of snapshots under the picture, or hide it.",
+            ),
         };
-        KeyboardShortcut::new(modifiers, key)
+        Spec { text, tooltip, shortcut: KeyboardShortcut::new(modifiers, key) }
     }
 
     /// The commands whose keys were pressed since the last frame. Plain keys belong to a text
@@ -362,7 +406,7 @@ impl Command {
     pub fn pressed(ctx: &Context) -> Vec<Self> {
         let typing = ctx.text_edit_focused();
         let focused = ctx.egui_wants_keyboard_input();
-        let mut commands = Self::ALL;
+        let mut commands: Vec<Self> = Self::all().collect();
         // Keys match with superfluous modifiers too, so the most specific come first.
         commands.sort_by_key(|command| {
             let modifiers = command.shortcut().modifiers;
@@ -389,6 +433,17 @@ impl Command {
     }
 }
 
+/// The number key of a toggle.
+fn key_of(toggle: Toggle) -> Key {
+    match toggle {
+        Toggle::EmissionDecoupling => Key::Num1,
+        Toggle::EmissionRatioTracking => Key::Num2,
+        Toggle::MajorantBoost => Key::Num3,
+        Toggle::FireAsLight => Key::Num4,
+        Toggle::Probes => Key::Num5,
+    }
+}
+
 /// Whether a shortcut was pressed, which then is nobody else's; Escape also closes what is open.
 fn is_pressed(input: &mut egui::InputState, shortcut: &KeyboardShortcut) -> bool {
     match shortcut.logical_key {
@@ -403,8 +458,9 @@ mod tests {
     use std::collections::HashSet;
 
     #[test]
-    fn every_command_has_a_key_of_its_own() {
-        let keys: HashSet<_> = C::ALL
+    fn every_command_has_a_key_and_a_name_of_its_own() {
+        let commands: Vec<Command> = C::all().collect();
+        let keys: HashSet<_> = commands
             .iter()
             .map(|command| {
                 let shortcut = command.shortcut();
@@ -412,7 +468,8 @@ mod tests {
                 (shortcut.logical_key, modifiers.command, modifiers.shift, modifiers.alt)
             })
             .collect();
-        assert_eq!(keys.len(), C::ALL.len());
-        assert_eq!(C::ALL.iter().collect::<HashSet<_>>().len(), C::ALL.len());
+        let names: HashSet<_> = commands.iter().map(|command| command.text()).collect();
+        assert_eq!((keys.len(), names.len()), (commands.len(), commands.len()));
+        assert!(Toggle::all().all(|toggle| commands.contains(&C::Toggle(toggle))));
     }
 }

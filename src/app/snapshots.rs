@@ -82,7 +82,7 @@ impl Snapshots {
                 self.strip.fill(entries);
                 if !problems.is_empty() {
                     let text = problems.join("\n");
-                    notices.failed(format!("Not all snapshots can be shown:\n{text}"));
+                    notices.failed(format!("Some snapshots cannot be shown:\n{text}"));
                 }
             }
             DiskReport::Kept { kept, picture, gone } => {
@@ -93,7 +93,7 @@ impl Snapshots {
                     let names: Vec<&str> =
                         gone.iter().map(|entry| entry.record.name.as_str()).collect();
                     notices.done(format!(
-                        "Snapshots take {} at most, so the oldest had to go: {}.",
+                        "Snapshots may use {} of disk space, so the oldest were deleted: {}.",
                         size_in_words(LIMIT),
                         names.join(", ")
                     ));
@@ -101,7 +101,7 @@ impl Snapshots {
             }
             DiskReport::NotKept(reason) => {
                 self.keeping -= 1;
-                notices.failed(format!("The picture could not be kept. {reason}"));
+                notices.failed(format!("The snapshot could not be kept. {reason}"));
             }
             DiskReport::Read(id, picture) => {
                 self.reading = false;
@@ -114,7 +114,7 @@ impl Snapshots {
             }
             DiskReport::Lost(id, reason) => {
                 self.strip.lose(&id);
-                notices.failed(format!("The snapshot could not be brought back. {reason}"));
+                notices.failed(format!("The snapshot could not be restored. {reason}"));
             }
             DiskReport::Failed(reason) => notices.failed(reason),
         }

@@ -12,27 +12,28 @@ use std::time::Instant;
 
 use clap::Args;
 use glam::UVec2;
-use indicatif::{ProgressBar, ProgressStyle};
 
+use super::console::{print, progress_bar, warn, warn_of_lost_samples};
 use super::cpu_time::process_seconds;
+use super::exit::{Exit, Refusal};
+use super::failed_path;
 use super::interrupt::listen_for_interrupt;
-use super::outputs::check_folder;
-use super::render::{header, parse_seconds};
+use super::outputs::make_folder;
 use super::scene_source::SceneArguments;
+use super::snapshot_header::header;
 use super::stats::Spent;
-use super::{Exit, Refusal, print, warn};
-use crate::error::{Error, Result};
+use super::values::parse_seconds;
+use crate::error::{Error, Progress, Result};
+use crate::format;
 use crate::image::exr::SnapshotHeader;
-use crate::render::Failure;
 use crate::render::compare::Comparison;
 use crate::render::side_by_side::{PairJob, RenderedPair, render_side_by_side};
 use crate::render::turns::Usage;
 use crate::scene::{self, Settings, VolumeCache};
-use crate::transport::{Frame, PixelSampler, Scene};
+use crate::transport::{PixelSampler, PreparedFrame, Scene};
 use errors::Errors;
 use sides::StrategyChoice;
 use table::{CompareTable, SideRow};
-pub(super) use table::{SpeedUpRow, put};
 
 /// CPU seconds of each side where the command line says nothing.
 const DEFAULT_SECONDS: f64 = 10.0;
@@ -94,7 +95,8 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
     };
     let scene = scene::assemble(&shared, &cache, &go_on)?;
     let cpu_setup = process_seconds();
-    let sides = settings.map(|settings| prepare(&scene, settings));
+    let [a, b] = settings;
+    let sides = [prepare(&scene, a, &go_on)?, prepare(&scene, b, &go_on)?];
     let wall_setup = start.elapsed().as_secs_f64();
 
     let pair = show_progress(job(arguments, &sides), &interrupt)?;
@@ -146,25 +148,15 @@ fn settings_of_sides(arguments: &Arguments, shared: &Settings) -> Result<[Settin
     Ok([settings(&arguments.a, "--a")?, settings(&arguments.b, "--b")?])
 }
 
-/// Makes the folder of the results, before anything is rendered in vain.
-pub(super) fn make_folder(folder: &Path) -> Result<()> {
-    check_folder(folder)?;
-    match folder.is_dir() {
-        true => Ok(()),
-        false => std::fs::create_dir(folder).map_err(|e| Error::io(folder, e)),
-    }
-}
-
 /// Frames the scene with the strategy of one side. Its pilot, if it has one, runs here, so that it
 /// counts as preparation.
-fn prepare(scene: &Scene, settings: Settings) -> Prepared {
+fn prepare(scene: &Scene, settings: Settings, progress: Progress) -> Result<Prepared> {
     let before = process_seconds();
     let scene = Scene { strategy: settings.strategy, ..scene.clone() };
     let size = UVec2::from_array(settings.film.size);
-    let frame = Frame::new(Arc::new(scene), size, settings.film.seed);
-    frame.guided_flights();
+    let frame = PreparedFrame::new(Arc::new(scene), size, settings.film.seed, progress)?;
     let setup = process_seconds() - before;
-    Prepared { settings, sampler: Arc::new(frame), setup }
+    Ok(Prepared { settings, sampler: Arc::new(frame), setup })
 }
 
 fn job(arguments: &Arguments, sides: &[Prepared; 2]) -> PairJob {
@@ -181,27 +173,20 @@ fn job(arguments: &Arguments, sides: &[Prepared; 2]) -> PairJob {
     }
 }
 
-/// A bar of so many steps on standard error, if that is a terminal.
-pub(super) fn progress_bar(steps: u64) -> ProgressBar {
-    let bar = ProgressBar::new(steps);
-    let style = ProgressStyle::with_template("{bar:40} {msg} · {elapsed} · {eta} left");
-    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-    bar
-}
-
 /// Renders both with a progress bar on standard error, if that is a terminal.
 fn show_progress(job: PairJob, interrupt: &AtomicBool) -> Result<RenderedPair> {
     const STEPS: u64 = 1000;
     let (spp, cpu_seconds) = (job.spp, job.cpu_seconds);
     let bar = progress_bar(STEPS);
-    let part = |account: &Usage| {
-        let by_samples = if spp > 0 { account.samples / f64::from(spp) } else { 0.0 };
-        let by_time = cpu_seconds.map_or(0.0, |end| account.cpu_seconds / end);
+    let part = |usage: &Usage| {
+        let by_samples = if spp > 0 { usage.samples / f64::from(spp) } else { 0.0 };
+        let by_time = cpu_seconds.map_or(0.0, |end| usage.cpu_seconds / end);
         by_samples.max(by_time).min(1.0)
     };
     let result = render_side_by_side(job, interrupt, &mut |[a, b]| {
         bar.set_position((0.5 * (part(a) + part(b)) * STEPS as f64) as u64);
-        bar.set_message(format!("A {:.1} spp · B {:.1} spp", a.samples, b.samples));
+        let [a, b] = [a, b].map(|usage| format::samples_per_pixel(usage.samples));
+        bar.set_message(format!("A {a} · B {b}"));
     });
     bar.finish_and_clear();
     result
@@ -255,29 +240,13 @@ fn conclude(
 ) -> Result<Exit, Refusal> {
     let choices = [&arguments.a, &arguments.b];
     for (side, name) in ["A", "B"].into_iter().enumerate() {
-        let totals = pair.sides[side].film.totals;
-        if totals.non_finite > 0 {
-            let count = totals.non_finite;
-            warn(&format!("{name}: {count} samples were not finite and count as black"));
-        }
-        if totals.guard_hits > 0 {
-            warn(&format!("{name}: {} paths were cut by the guard", totals.guard_hits));
-        }
+        warn_of_lost_samples(&pair.sides[side].film.totals, &format!("{name}: "));
         if let Some(failure) = &pair.sides[side].failure {
             let scene = arguments.scene.in_words(&sides[side].settings);
-            let what = failed(name, failure, &format!("{scene}{}", choices[side].in_words()));
-            return Err(Error::invalid("", "", what).into());
+            let scene = format!("{scene}{}", choices[side].in_words());
+            let what = failed_path::in_words(failure, &scene);
+            return Err(Error::invalid("", "", format!("{name}: {what}")).into());
         }
     }
     Ok(if pair.interrupted { Exit::Interrupted } else { Exit::Done })
-}
-
-/// What failed, and the command that follows the very path.
-pub(super) fn failed(name: &str, failure: &Failure, scene: &str) -> String {
-    match failure.replay_options() {
-        Some(path) => {
-            format!("{name}: {failure} (`flambeau replay {scene} {path}` follows that path)")
-        }
-        None => format!("{name}: {failure}"),
-    }
 }

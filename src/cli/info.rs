@@ -5,8 +5,10 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use super::{Exit, Refusal, print};
+use super::console::print;
+use super::exit::{Exit, Refusal};
 use crate::error::{NO_PROGRESS, Result};
+use crate::format::mebibytes;
 use crate::image::exr::{Info, read_info};
 use crate::scene::settings::VolumeSettings;
 use crate::scene::{self, GridDescription, Settings, VolumeCache};
@@ -77,7 +79,7 @@ fn describe_grid(report: &mut InfoText, grid: &GridDescription, info: &GridInfo)
         report.row("active voxels", voxels.active.to_string());
         let bounds = voxels.bounds.map(|[low, high]| format!("{low:?} .. {high:?}"));
         report.row("bounds", bounds.unwrap_or_else(|| "empty".to_owned()));
-        report.row("memory", format!("{:.1} MiB", voxels.memory_bytes as f64 / 1024.0 / 1024.0));
+        report.row("memory", mebibytes(voxels.memory_bytes));
     }
     let map = &info.transform.index_to_world;
     for row in 0..3 {
@@ -97,7 +99,7 @@ fn snapshot(info: &Info) -> String {
         report.row("note", note);
     }
     let Some(header) = &info.header else {
-        report.row("note", "not written by Flambeau, so it cannot be continued");
+        report.row("note", "not written by Flambeau, so it cannot be resumed");
         return report.0;
     };
     report.row("version", &header.version);

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use super::Exit;
+use super::exit::Exit;
 use crate::error::{Error, Result};
 
 /// After an interrupt, another one this much later ends the program without waiting for files.

@@ -1,6 +1,7 @@
 //! `flambeau keys`: every key of the scene file.
 
-use super::{Exit, Refusal, print};
+use super::console::print;
+use super::exit::{Exit, Refusal};
 use crate::error::Error;
 use crate::scene::keys::{Key, all};
 

@@ -1,7 +1,10 @@
 //! The command line: one file a command. `main` parses, runs and reports.
 
 mod compare;
+mod console;
 pub mod cpu_time;
+mod exit;
+mod failed_path;
 mod info;
 mod interrupt;
 mod keys;
@@ -9,14 +12,18 @@ mod outputs;
 mod render;
 mod replay;
 mod scene_source;
+mod snapshot_header;
+mod speed_up_row;
 mod stats;
 mod sweep;
+mod values;
 
 use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use crate::error::Error;
+use console::warn;
+use exit::{Exit, Refusal};
 
 /// Interactive, progressive preview of fire, smoke, fog and cloud.
 #[derive(Debug, Parser)]
@@ -48,38 +55,6 @@ enum Command {
     Info(info::Arguments),
     /// Follow one path and print it vertex by vertex.
     Replay(replay::Arguments),
-}
-
-/// How a command ended, and what the shell is told.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Exit {
-    Done = 0,
-    Failed = 1,
-    WrongUsage = 2,
-    Interrupted = 130,
-}
-
-/// Why a command could not do its work.
-struct Refusal {
-    error: Error,
-    exit: Exit,
-}
-
-impl From<Error> for Refusal {
-    fn from(error: Error) -> Self {
-        let exit = match error {
-            Error::Cancelled => Exit::Interrupted,
-            _ => Exit::Failed,
-        };
-        Self { error, exit }
-    }
-}
-
-impl Refusal {
-    /// What was asked for makes no sense, whatever the files.
-    fn usage(error: Error) -> Self {
-        Self { error, exit: Exit::WrongUsage }
-    }
 }
 
 /// Runs the program on the arguments of the process.
@@ -123,24 +98,6 @@ fn open_window(_: Option<String>) -> Result<Exit, Refusal> {
          feature `gui`",
     );
     Ok(Exit::WrongUsage)
-}
-
-/// Prints to standard output; a reader that has gone (`flambeau keys | head`) is no error.
-fn print(text: &str) -> Result<(), Refusal> {
-    use std::io::{ErrorKind, Write};
-    match std::io::stdout().lock().write_all(text.as_bytes()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(Error::io("standard output", error).into())
-        }
-        _ => Ok(()),
-    }
-}
-
-/// Says something on standard error. Where that is closed or full there is nobody to tell, and the
-/// work goes on.
-fn warn(text: &str) {
-    use std::io::Write;
-    let _ = writeln!(std::io::stderr().lock(), "flambeau: {text}");
 }
 
 #[cfg(test)]

@@ -1,8 +1,10 @@
 //! The files that a render leaves behind.
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Result};
+use crate::files;
 use crate::image::tone::Tone;
 use crate::image::{exr, npy, png};
 use crate::render::Film;
@@ -84,6 +86,23 @@ pub fn write_all(outputs: &[Output], film: &Film, header: &exr::SnapshotHeader) 
         first = first.and(result);
     }
     first
+}
+
+/// Makes the folder of the results. Called before rendering, so that nothing is rendered in vain.
+pub fn make_folder(folder: &Path) -> Result<()> {
+    check_folder(folder)?;
+    match folder.is_dir() {
+        true => Ok(()),
+        false => std::fs::create_dir(folder).map_err(|e| Error::io(folder, e)),
+    }
+}
+
+/// Writes a file of text, whole or not at all.
+///
+/// # Errors
+/// When the system refuses to.
+pub fn write_text(path: &Path, text: &str) -> Result<()> {
+    files::replace(path, |file| file.write_all(text.as_bytes()).map_err(|e| Error::io(path, e)))
 }
 
 #[cfg(test)]

@@ -7,20 +7,24 @@ use std::time::Instant;
 
 use clap::Args;
 use glam::UVec2;
-use indicatif::{ProgressBar, ProgressStyle};
 
+use super::console::{progress_bar, warn, warn_of_lost_samples};
 use super::cpu_time::process_seconds;
+use super::exit::{Exit, Refusal};
+use super::failed_path;
 use super::interrupt::listen_for_interrupt;
 use super::outputs::{Output, check_folder, write_all};
 use super::scene_source::SceneArguments;
+use super::snapshot_header::header;
 use super::stats::{Spent, Stats};
-use super::{Exit, Refusal, warn};
+use super::values::parse_seconds;
 use crate::error::{Error, Result};
 use crate::files::Fingerprint;
+use crate::format;
 use crate::image::exr::{Snapshot, SnapshotHeader, read_snapshot};
 use crate::render::estimate::samples_per_pixel;
 use crate::render::schedule::Limits;
-use crate::render::{Failure, Film, FilmStats, Headless, RenderJob, render_headless};
+use crate::render::{Film, FilmStats, Headless, RenderJob, render_headless};
 use crate::scene::{self, Settings, VolumeCache};
 use crate::transport::Frame;
 
@@ -52,14 +56,6 @@ pub struct Arguments {
     resume: Option<PathBuf>,
 }
 
-/// A number of seconds above 0.
-pub(super) fn parse_seconds(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(seconds) if seconds > 0.0 && seconds.is_finite() => Ok(seconds),
-        _ => Err("expected a number of seconds above 0".to_owned()),
-    }
-}
-
 pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
     let start = Instant::now();
     let interrupt = listen_for_interrupt()?;
@@ -87,7 +83,7 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
         None => (None, Spent::default()),
     };
     let size = UVec2::from_array(settings.film.size);
-    let sampler = Arc::new(Frame::new(Arc::new(scene), size, settings.film.seed));
+    let sampler = Arc::new(Frame::new(Arc::new(scene), size, settings.film.seed, &go_on)?);
     let threads = arguments.threads.map(usize::from);
     let job = RenderJob { sampler, size, limits, resume: film, threads };
     let render = show_progress(job, &interrupt)?;
@@ -152,9 +148,7 @@ fn show_progress(job: RenderJob, interrupt: &AtomicBool) -> Result<Headless> {
     const STEPS: u64 = 1000;
     let limits = job.limits;
     let before = job.resume.as_ref().map_or(0.0, samples_per_pixel);
-    let bar = ProgressBar::new(STEPS);
-    let style = ProgressStyle::with_template("{bar:40} {msg} · {elapsed} · {eta} left");
-    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    let bar = progress_bar(STEPS);
     let result = render_headless(job, interrupt, &mut |film: &Film, seconds: f64| {
         let samples = samples_per_pixel(film);
         let by_samples = match limits.spp {
@@ -163,7 +157,7 @@ fn show_progress(job: RenderJob, interrupt: &AtomicBool) -> Result<Headless> {
         };
         let by_time = limits.seconds.map_or(0.0, |end| seconds / end);
         bar.set_position((by_samples.max(by_time) * STEPS as f64) as u64);
-        bar.set_message(format!("{samples:.1} spp"));
+        bar.set_message(format::samples_per_pixel(samples));
     });
     bar.finish_and_clear();
     result
@@ -189,41 +183,13 @@ fn finish(
     written?;
     report(arguments, render, &figures);
     if let Some(failure) = &render.failure {
-        return Err(Error::invalid("", "", failed(arguments, settings, failure)).into());
+        let what = failed_path::in_words(failure, &arguments.scene.in_words(settings));
+        return Err(Error::invalid("", "", what).into());
     }
     Ok(if render.interrupted { Exit::Interrupted } else { Exit::Done })
 }
 
-/// What a snapshot says about itself.
-pub(super) fn header(
-    settings: &Settings,
-    files: Vec<Fingerprint>,
-    spent: Spent,
-) -> Result<SnapshotHeader> {
-    Ok(SnapshotHeader {
-        scene: scene::to_toml(settings, None)?,
-        strategy: toml::to_string(&settings.strategy)
-            .map_err(|e| Error::invalid("", "strategy", e.to_string()))?,
-        seed: settings.film.seed,
-        version: env!("CARGO_PKG_VERSION").to_owned(),
-        wall_seconds: spent.wall,
-        cpu_seconds_setup: spent.cpu_setup,
-        cpu_seconds_render: spent.cpu_render,
-        files,
-    })
-}
-
-/// What failed, and the command that follows the very path.
-fn failed(arguments: &Arguments, settings: &Settings, failure: &Failure) -> String {
-    let scene = arguments.scene.in_words(settings);
-    match failure.replay_options() {
-        Some(path) => format!("{failure} (`flambeau replay {scene} {path}` follows that path)"),
-        None => failure.to_string(),
-    }
-}
-
 fn report(arguments: &Arguments, render: &Headless, figures: &FilmStats) {
-    let totals = render.film.totals;
     let noise = figures.noise.map_or(String::new(), |n| format!(", noise {:.2} %", n * 100.0));
     let names: Vec<String> =
         arguments.output.iter().map(|output| output.path().display().to_string()).collect();
@@ -234,10 +200,5 @@ fn report(arguments: &Arguments, render: &Headless, figures: &FilmStats) {
         render.seconds,
         names.join(", ")
     ));
-    if totals.non_finite > 0 {
-        warn(&format!("{} samples were not finite and count as black", totals.non_finite));
-    }
-    if totals.guard_hits > 0 {
-        warn(&format!("{} paths were cut by the guard", totals.guard_hits));
-    }
+    warn_of_lost_samples(&render.film.totals, "");
 }

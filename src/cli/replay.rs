@@ -6,13 +6,15 @@ use std::sync::Arc;
 use clap::Args;
 use glam::{UVec2, Vec3A};
 
+use super::console::print;
+use super::exit::{Exit, Refusal};
 use super::scene_source::SceneArguments;
-use super::{Exit, Refusal, print};
+use super::values::parse_pixel;
 use crate::error::{Error, NO_PROGRESS};
 use crate::scene::{self, VolumeCache};
 use crate::transport::observer::{Observer, PathStep};
 use crate::transport::vertex::Vertex;
-use crate::transport::{Frame, PathSample};
+use crate::transport::{PathSample, PreparedFrame};
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -26,11 +28,6 @@ pub struct Arguments {
     sample: u32,
 }
 
-fn parse_pixel(text: &str) -> Result<UVec2, String> {
-    let sides = text.split_once(',').and_then(|(x, y)| Some((x.parse().ok()?, y.parse().ok()?)));
-    sides.map(|(x, y)| UVec2::new(x, y)).ok_or_else(|| "expected X,Y such as 480,270".to_owned())
-}
-
 pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
     let cache = VolumeCache::default();
     let settings = arguments.scene.settings(&cache, NO_PROGRESS)?;
@@ -41,7 +38,7 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
         return Err(Refusal::usage(Error::invalid("", "--pixel", reason)));
     }
     let scene = scene::assemble(&settings, &cache, NO_PROGRESS)?;
-    let frame = Frame::new(Arc::new(scene), size, settings.film.seed);
+    let frame = PreparedFrame::new(Arc::new(scene), size, settings.film.seed, NO_PROGRESS)?;
     let mut log = Log::default();
     let sample = frame.trace(pixel, arguments.sample, &mut log);
     print(&format!("{}{}", log.text, summary(&sample)))?;
@@ -97,7 +94,7 @@ fn triple(value: Vec3A) -> String {
     format!("({}, {}, {})", value.x, value.y, value.z)
 }
 
-/// What the path brought to its pixel.
+/// The contributions of the path to its pixel.
 fn summary(sample: &PathSample) -> String {
     let mut text = String::new();
     let rows = [

@@ -3,7 +3,9 @@
 use clap::Args;
 use glam::UVec2;
 
-use super::{Refusal, warn};
+use super::console::warn;
+use super::exit::Refusal;
+use super::values::{parse_size, quoted};
 use crate::error::{Progress, Result};
 use crate::scene::settings::MAX_SEED;
 use crate::scene::{self, Overrides, Settings, VolumeCache};
@@ -53,7 +55,7 @@ impl SceneArguments {
         self.size
     }
 
-    /// What the scene is called on the command line.
+    /// The name of the scene on the command line.
     pub fn name(&self) -> &str {
         &self.scene
     }
@@ -68,26 +70,6 @@ impl SceneArguments {
         let [width, height] = settings.film.size;
         words.push(format!("--size {width}x{height} --seed {}", settings.film.seed));
         words.join(" ")
-    }
-}
-
-/// A word as a shell takes it literally.
-pub(super) fn quoted(word: &str) -> String {
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./:,=+@%".contains(c);
-    if !word.is_empty() && word.chars().all(is_plain) {
-        return word.to_owned();
-    }
-    format!("'{}'", word.replace('\'', r"'\''"))
-}
-
-fn parse_size(text: &str) -> Result<UVec2, String> {
-    let sides =
-        text.split_once(['x', 'X']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
-    match sides {
-        Some((width, height)) if (1..=16384).contains(&width) && (1..=16384).contains(&height) => {
-            Ok(UVec2::new(width, height))
-        }
-        _ => Err("expected WIDTHxHEIGHT with sides of 1 to 16384, such as 960x540".to_owned()),
     }
 }
 
@@ -140,13 +122,5 @@ mod tests {
         assert!(words.ends_with("--size 31x17 --seed 77"), "{words}");
         let again = std::iter::once("x".to_owned()).chain(split(&words));
         assert_eq!(settings(&<Line as clap::Parser>::parse_from(again)), expected);
-    }
-
-    #[test]
-    fn sizes_are_two_numbers() {
-        assert_eq!(parse_size("960x540"), Ok(UVec2::new(960, 540)));
-        for wrong in ["960", "0x5", "5x0", "ax5", "5x5x5", "-5x5", "99999x5", ""] {
-            assert!(parse_size(wrong).is_err(), "{wrong}");
-        }
     }
 }

@@ -10,12 +10,14 @@ use clap::Args;
 use glam::UVec2;
 use indicatif::ProgressBar;
 
-use super::compare::{failed, make_folder, progress_bar};
+use super::console::{print, progress_bar, warn, warn_of_lost_samples};
 use super::cpu_time::process_seconds;
+use super::exit::{Exit, Refusal};
+use super::failed_path;
 use super::interrupt::listen_for_interrupt;
-use super::render::parse_seconds;
+use super::outputs::make_folder;
 use super::scene_source::SceneArguments;
-use super::{Exit, Refusal, print, warn};
+use super::values::parse_seconds;
 use crate::error::{Error, Result};
 use crate::render::pool::{Pool, Priority};
 use crate::render::sweep::{
@@ -118,21 +120,14 @@ fn conclude(
 ) -> Result<Exit, Refusal> {
     for (trial, tried) in std::iter::zip(trials, &swept.tried) {
         let Some(totals) = tried.map(|tried| tried.totals) else { continue };
-        let name = trial.kind.name();
-        if totals.non_finite > 0 {
-            let count = totals.non_finite;
-            warn(&format!("{name}: {count} samples were not finite and count as black"));
-        }
-        if totals.guard_hits > 0 {
-            warn(&format!("{name}: {} paths were cut by the guard", totals.guard_hits));
-        }
+        warn_of_lost_samples(&totals, &format!("{}: ", trial.kind.name()));
     }
     if let Some((number, failure)) = &swept.failure {
         let Trial { kind, strategy, .. } = &trials[*number];
         let scene = arguments.scene.in_words(settings);
         let toggles = table::toggles_in_words(strategy);
-        let what = failed(&kind.name(), failure, &format!("{scene}{toggles}"));
-        return Err(Error::invalid("", "", what).into());
+        let what = failed_path::in_words(failure, &format!("{scene}{toggles}"));
+        return Err(Error::invalid("", "", format!("{}: {what}", kind.name())).into());
     }
     if ranking.leave_on.is_none() {
         warn("no pixel has two samples; --time or --spp gives each strategy more");

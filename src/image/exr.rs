@@ -125,13 +125,13 @@ pub fn read_snapshot(path: &Path) -> Result<Snapshot> {
     let reader = open(path)?;
     let info = info(path, reader.meta_data())?;
     let Some(header) = info.header else {
-        let reason = "this EXR was not written by Flambeau, so there is nothing to continue";
+        let reason = "this EXR was not written by Flambeau, so it cannot be resumed";
         return Err(invalid(path, "", reason));
     };
     if info.parts != 1 {
         let reason = format!(
             "it has {} parts, and a snapshot has one; another program may have added to it, so \
-             that it cannot be continued",
+             it cannot be resumed",
             info.parts
         );
         return Err(invalid(path, "", reason));
@@ -297,8 +297,8 @@ mod tests {
 
     use super::*;
     use crate::files::Fingerprint;
-    use crate::render::synthetic::Uniform;
-    use crate::transport::{PathSample, PixelSampler};
+    use crate::render::synthetic::{Uniform, sample_of};
+    use crate::transport::PathSample;
 
     fn film(samples: u32) -> Film {
         let size = UVec2::new(37, 19);
@@ -308,7 +308,7 @@ mod tests {
                 let pixel = UVec2::new(x, y);
                 // Uneven counts, as after an interrupt.
                 for s in 0..samples + (x + y) % 2 {
-                    film.add(pixel, &Uniform::default().sample(pixel, s));
+                    film.add(pixel, &sample_of(&Uniform::default(), pixel, s));
                 }
             }
         }

@@ -3,9 +3,9 @@
 use glam::UVec2;
 
 use crate::math::ACCUMULATORS;
+use crate::render::coarse::shown_pixel;
 use crate::render::estimate::PixelEstimate;
 use crate::render::film::{Film, MAX_SAMPLES, Sums};
-use crate::render::publish::shown_pixel;
 
 /// Floats in the state of a pixel.
 const STATE_WORDS: usize = size_of::<Sums>() / size_of::<f32>();

@@ -3,7 +3,8 @@
 
 use glam::Vec3A;
 
-use super::{Emitter, LightSample};
+use super::emitter::Emitter;
+use super::sample::LightSample;
 use crate::math::{Aabb, Rgb, luminance};
 
 /// The same intensity in all directions.

@@ -2,7 +2,10 @@
 
 use glam::Vec3A;
 
-use super::{By, Light, LightTree, MOST_IMPORTANT, Receiver};
+use super::choice::By;
+use super::emitter::{MOST_IMPORTANT, Receiver};
+use super::kinds::Light;
+use super::tree::LightTree;
 use crate::{math::luminance, volume::world::World};
 
 /// Chooses among some of a scene's lights, by their index in the scene.
@@ -163,7 +166,7 @@ impl Selector {
         }
     }
 
-    /// What all lights may bring.
+    /// The importance of all lights together.
     fn total(&self, to: &Receiver) -> f32 {
         self.suns.iter().map(|sun| sun.importance).sum::<f32>() + self.tree.importance(to)
     }

@@ -4,7 +4,7 @@ use std::f32::consts::PI;
 
 use glam::{Vec2, Vec3A};
 
-use super::LightSample;
+use super::sample::LightSample;
 use crate::{
     math::{OrthonormalBasis, Rgb},
     sampling::warp::{uniform_cone, uniform_cone_pdf},
@@ -35,7 +35,7 @@ impl Sun {
         self.to_sun
     }
 
-    /// What it brings to a plane across its direction.
+    /// Irradiance on a plane across its direction.
     pub fn irradiance(&self) -> Rgb {
         self.irradiance
     }

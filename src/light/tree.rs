@@ -7,73 +7,15 @@
 
 mod build;
 mod cone;
+mod nodes;
 #[cfg(test)]
 mod tests;
 
 use glam::Vec3A;
 
-use super::MOST_IMPORTANT;
-use crate::math::Aabb;
-use cone::Cone;
-
-/// A light as the hierarchy sees it.
-#[derive(Clone, Copy, Debug)]
-pub struct Emitter {
-    /// A box around it.
-    pub bounds: Aabb,
-    /// Radiant intensity, W/sr; a rough value will do. Without any it is never chosen.
-    pub intensity: f32,
-    /// Of a light like a spot: the unit axis, and the cosine of the half angle about it outside
-    /// of which it sends nothing.
-    pub cone: Option<(Vec3A, f32)>,
-}
-
-/// Where light is wanted.
-#[derive(Clone, Copy, Debug)]
-pub struct Receiver {
-    /// The point.
-    pub position: Vec3A,
-    /// On surfaces the unit normal of the lit side.
-    pub normal: Option<Vec3A>,
-}
-
-/// The hierarchy; empty by default.
-#[derive(Clone, Debug, Default)]
-pub struct LightTree {
-    /// The root first, children of a node side by side.
-    nodes: Vec<LightNode>,
-    /// For each emitter the turns from the root, the first in the lowest bit, 1 for the second
-    /// child; `None` for those that are not in the tree.
-    trails: Vec<Option<u64>>,
-    /// For each emitter its node; the root for those that are not in the tree.
-    leaves: Vec<u32>,
-    /// Intensity of the brightest emitter.
-    brightest: f32,
-}
-
-#[derive(Clone, Debug)]
-struct LightNode {
-    bounds: Aabb,
-    /// Sum over its emitters, relative to the brightest of the tree.
-    intensity: f32,
-    /// Square of the distance below which the nearest emitter is not expected.
-    least_squared: f32,
-    cone: Cone,
-    kind: NodeKind,
-}
-
-#[derive(Clone, Copy, Debug)]
-enum NodeKind {
-    /// One emitter, by its index.
-    Leaf(u32),
-    /// Index of the first child; the second follows it.
-    Inner(u32),
-}
-
-/// Least product of distances, so that a light at the very point stays finite.
-const LEAST_SQUARED: f64 = 1e-60;
-/// Allowance for rounding in the horizon test, relative to the distance.
-const HORIZON_SLACK: f32 = 1e-6;
+use super::emitter::{Emitter, MOST_IMPORTANT, Receiver};
+pub use nodes::LightTree;
+use nodes::{LightNode, NodeKind};
 
 impl LightTree {
     /// Builds the hierarchy; indices below are those of `emitters`.
@@ -185,36 +127,6 @@ impl LightTree {
         let share = a / total;
         let (low, high) = (f64::from(u8::from(a > 0.0)), f64::from(u8::from(b > 0.0)));
         Some(share.clamp(low * f64::MIN_POSITIVE, 1.0 - high * f64::EPSILON))
-    }
-}
-
-impl LightNode {
-    /// Rough irradiance of its emitters at the receiver, all facing it, relative to the brightest
-    /// of the tree.
-    ///
-    /// For 1/d² stands 1/(nearest · farthest distance of the box), which is its mean along a line
-    /// towards the receiver and within π/2 of it along one across.
-    #[inline]
-    fn importance(&self, to: &Receiver) -> f64 {
-        let (low, high) = (self.bounds.min - to.position, self.bounds.max - to.position);
-        let nearest_squared = low.max(-high).max(Vec3A::ZERO).length_squared();
-        let farthest_squared = low.abs().max(high.abs()).length_squared();
-        let cosine = to.normal.map_or(1.0, |normal| {
-            // The greatest height of the box above the tangent plane.
-            let height = (normal * low).max(normal * high).element_sum();
-            let slack = HORIZON_SLACK * farthest_squared.sqrt();
-            if height < -slack {
-                return 0.0;
-            }
-            (height.max(slack) / nearest_squared.sqrt()).min(1.0)
-        });
-        if cosine == 0.0 || !self.cone.may_reach(&self.bounds, to.position) {
-            return 0.0;
-        }
-        let nearest_squared = f64::from(nearest_squared.max(self.least_squared).min(f32::MAX));
-        let farthest_squared = f64::from(farthest_squared.min(f32::MAX));
-        let squared = (nearest_squared * farthest_squared).sqrt().max(LEAST_SQUARED);
-        f64::from(self.intensity) * f64::from(cosine) / squared
     }
 }
 

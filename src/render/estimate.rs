@@ -245,21 +245,14 @@ mod tests {
     use super::*;
     use crate::math::{PathRng, Rgb, Slot};
     use crate::render::synthetic::Uniform;
-    use crate::transport::{PathSample, PixelSampler};
+    use crate::transport::{PathSample, PixelSampler, SampleNumber};
 
     fn sampled(size: UVec2, samples: u32) -> Film {
         sampled_by(&Uniform::default(), size, samples)
     }
 
     fn sampled_by(sampler: &impl PixelSampler, size: UVec2, samples: u32) -> Film {
-        let mut film = Film::new(size).unwrap();
-        for y in 0..size.y {
-            for x in 0..size.x {
-                let pixel = UVec2::new(x, y);
-                (0..samples).for_each(|s| film.add(pixel, &sampler.sample(pixel, s)));
-            }
-        }
-        film
+        crate::render::synthetic::sampled(sampler, size, samples)
     }
 
     /// A uniform variable on [0, 1) has variance 1/12, so a mean of n has 1/(12 n). The estimate
@@ -291,8 +284,8 @@ mod tests {
     struct Smooth;
 
     impl PixelSampler for Smooth {
-        fn sample(&self, pixel: UVec2, sample: u32) -> PathSample {
-            let mut rng = PathRng::stratified(0, pixel, sample);
+        fn sample(&self, pixel: UVec2, number: SampleNumber) -> PathSample {
+            let mut rng = PathRng::stratified(0, pixel, number.index());
             let value = (0.5 + rng.at(Slot::PixelX)) * (0.5 + rng.at(Slot::PixelY));
             let value = value * 2.0 * rng.at(Slot::Distance);
             PathSample { direct: Rgb::splat(value), ..Default::default() }

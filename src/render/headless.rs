@@ -18,7 +18,8 @@ pub struct RenderJob {
     pub sampler: Arc<dyn PixelSampler>,
     /// Width and height in pixels.
     pub size: UVec2,
-    /// When to stop. With neither limit only the interrupt ends the render.
+    /// When to stop; whatever the time, not before every pixel has a sample. With neither limit
+    /// only the interrupt ends the render.
     pub limits: Limits,
     /// A film to go on from.
     pub resume: Option<Film>,
@@ -55,10 +56,14 @@ pub fn render_headless(
         None => Film::new(job.size)?,
     };
     let pool = Pool::new(job.threads, Priority::Normal)?;
-    let mut engine = ProgressiveRender::new(job.sampler, film, job.limits, None);
+    let untimed = Limits { seconds: None, ..job.limits };
+    let mut engine = ProgressiveRender::new(job.sampler, film, untimed, None);
     let stop = || interrupt.load(Ordering::Relaxed);
     let mut failure = None;
     let interrupted = loop {
+        if engine.is_complete() {
+            engine.set_limits(job.limits);
+        }
         if stop() && !engine.is_finished() {
             break true;
         }

@@ -1,11 +1,11 @@
-//! Layers: what a picture is made of and what it cost, one number or color a pixel.
+//! Layers of a picture: parts of its light, depth, and what it cost, one number or color a pixel.
 
 use glam::UVec2;
 use rayon::prelude::*;
 
+use super::coarse::shown_pixel;
 use super::estimate::PixelEstimate;
 use super::film::Film;
-use super::publish::shown_pixel;
 
 /// One thing that a film knows of each pixel beside its light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,7 +46,7 @@ impl Layer {
         matches!(self, Self::Emission | Self::Direct | Self::Indirect | Self::Background)
     }
 
-    /// What menus call it.
+    /// Its name in menus.
     pub fn name(self) -> &'static str {
         match self {
             Self::Emission => "Emission",
@@ -85,9 +85,9 @@ impl Layer {
 pub struct LayerMap {
     /// Which one, if any.
     pub layer: Option<Layer>,
-    /// Of a layer of light: linear RGB and 1.
+    /// The pixels of a layer of light, as linear RGB and 1.
     pub light: Vec<[f32; 4]>,
-    /// Of any other: its numbers, 0 where there is none.
+    /// The numbers of any other layer, 0 where there is none.
     pub numbers: Vec<f32>,
     /// Smallest and largest number other than zero, if there are any.
     pub range: Option<[f32; 2]>,

@@ -3,13 +3,15 @@
 //! - [`film`]: per-pixel sums in independent accumulators, kept so that a render can be continued
 //!   bit for bit; [`estimate`] reads means and variances from them, [`publish`] whole pictures.
 //!   An [`area`] is a rectangle of its pixels.
+//! - [`coarse`]: blocks that one pixel stands for while the others have no samples.
 //! - [`schedule`]: pure logic; from what is done and what it cost to the next piece of work.
-//! - [`pool`] does one piece of work on all threads, [`engine`] repeats that. The window's
-//!   [`session`] and the command line's [`headless`] both drive the same engine; where several
+//! - [`pool`] does one piece of work on all threads, [`progressive`] repeats that. The window's
+//!   [`session`] and the command line's [`headless`] both drive that loop; where several
 //!   share the threads, [`turns`] says whose turn it is; [`side_by_side`] renders two so, and
 //!   [`compare`] holds their films against each other; [`sweep`] does it with all strategies.
 
 pub mod area;
+pub mod coarse;
 pub mod compare;
 pub mod estimate;
 pub mod film;

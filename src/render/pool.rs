@@ -7,11 +7,12 @@ use std::sync::{Mutex, PoisonError};
 use glam::UVec2;
 use rayon::prelude::*;
 
+use super::coarse::representative;
 use super::film::{Film, Sums, TILE, Totals, add_sample, row_pixels};
-use super::schedule::{Work, representative};
+use super::schedule::Work;
 use super::thread_time::thread_seconds;
 use crate::error::{Error, Result};
-use crate::transport::PixelSampler;
+use crate::transport::{PixelSampler, Prepared, SampleNumber};
 
 /// How the threads stand against the rest of the machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,7 +34,7 @@ pub struct Pool {
 pub struct Failure {
     /// The pixel and the sample in question; none where the render could not begin.
     pub at: Option<(UVec2, u32)>,
-    /// What went wrong.
+    /// The reason.
     pub message: String,
 }
 
@@ -57,7 +58,7 @@ impl std::fmt::Display for Failure {
     }
 }
 
-/// What became of a piece of work.
+/// The outcome of a piece of work.
 #[derive(Debug)]
 pub struct WorkOutcome {
     /// Counts of what was done, all of it or not.
@@ -100,17 +101,40 @@ impl Pool {
         self.threads.install(f)
     }
 
-    /// Does `work` on `film`. `stop` is asked before every sample; a piece broken off leaves the
-    /// film consistent, and doing the same work again completes it.
+    /// Runs the pilot pass of `sampler` on these threads; `None` if `stop` said so earlier.
+    ///
+    /// # Errors
+    /// What kept it from doing so.
+    pub fn prepare(
+        &self,
+        sampler: &dyn PixelSampler,
+        stop: &(dyn Fn() -> bool + Sync),
+    ) -> Result<Option<Prepared>, Failure> {
+        let go_on = |_: f32| !stop();
+        let prepare = || self.threads.install(|| sampler.prepare(&go_on));
+        let message = match catch_unwind(AssertUnwindSafe(prepare)) {
+            Ok(Ok(prepared)) => return Ok(Some(prepared)),
+            Ok(Err(Error::Cancelled)) => return Ok(None),
+            Ok(Err(error)) => error.to_string(),
+            Err(panic) => panic_message(&*panic),
+        };
+        Err(Failure { at: None, message })
+    }
+
+    /// Does `work` on `film`. Without `prepared` only first samples are taken. `stop` is asked before
+    /// every sample; a piece broken off leaves the film consistent, and doing the same work again
+    /// completes it.
     pub fn sample(
         &self,
         film: &mut Film,
         sampler: &dyn PixelSampler,
+        prepared: Option<&Prepared>,
         work: &Work,
         stop: &(dyn Fn() -> bool + Sync),
     ) -> WorkOutcome {
         let failure = Mutex::new(None);
-        let row = RowContext { sampler, work, size: film.size(), tiles: film.tiles(), stop };
+        let row =
+            RowContext { sampler, prepared, work, size: film.size(), tiles: film.tiles(), stop };
         let first_row = work.tiles.start * TILE as usize;
         let (counts, sums) = film.tiles_mut(work.tiles.clone());
         let Done { totals, cpu_seconds, complete } = self.threads.install(|| {
@@ -135,7 +159,7 @@ fn rows_at_once(stride: u32) -> usize {
     (stride * stride / TILE).max(1) as usize
 }
 
-/// What was done of some rows.
+/// The outcome of some rows.
 struct Done {
     totals: Totals,
     cpu_seconds: f64,
@@ -156,9 +180,10 @@ impl Done {
     }
 }
 
-/// What is common to the rows of one piece of work.
+/// The values that the rows of one piece of work share.
 struct RowContext<'a> {
     sampler: &'a dyn PixelSampler,
+    prepared: Option<&'a Prepared>,
     work: &'a Work,
     size: UVec2,
     tiles: UVec2,
@@ -169,6 +194,14 @@ impl RowContext<'_> {
     /// Whether pixels of the row that begins with `first` stand for a block.
     fn has_work(&self, first: UVec2, width: u32) -> bool {
         width > 0 && representative(first, self.work.stride, self.size).y == first.y
+    }
+
+    /// The sample of that index, if it may be taken.
+    fn number(&self, index: u32) -> Option<SampleNumber<'_>> {
+        match (index, self.prepared) {
+            (0, _) => Some(SampleNumber::First),
+            (_, prepared) => prepared.map(|prepared| SampleNumber::Later(index, prepared)),
+        }
     }
 
     /// Samples one row of a tile.
@@ -199,11 +232,12 @@ impl RowContext<'_> {
                 let count = &mut counts[x as usize];
                 let sums = &mut sums[x as usize];
                 while *count < self.work.target {
+                    let Some(number) = self.number(*count) else { break };
                     if (self.stop)() {
                         return false;
                     }
                     at.set(Some((pixel, *count)));
-                    let sample = self.sampler.sample(pixel, *count);
+                    let sample = self.sampler.sample(pixel, number);
                     totals.set(totals.get().plus(add_sample(count, sums, &sample)));
                 }
             }
@@ -245,6 +279,10 @@ mod tests {
 
     const SIZE: UVec2 = UVec2::new(53, 37);
 
+    fn prepared(sampler: &impl PixelSampler) -> Option<Prepared> {
+        sampler.prepare(crate::error::NO_PROGRESS).ok()
+    }
+
     fn whole(film: &Film, target: u32) -> Work {
         Work { stride: 1, target, tiles: 0..film.tile_count(), area: None }
     }
@@ -253,7 +291,13 @@ mod tests {
         let pool = Pool::new(Some(threads), Priority::Normal).unwrap();
         let mut film = Film::new(SIZE).unwrap();
         let work = whole(&film, 11);
-        let outcome = pool.sample(&mut film, &Uniform::default(), &work, &|| false);
+        let outcome = pool.sample(
+            &mut film,
+            &Uniform::default(),
+            prepared(&Uniform::default()).as_ref(),
+            &work,
+            &|| false,
+        );
         assert!(outcome.complete);
         film
     }
@@ -275,7 +319,8 @@ mod tests {
             let mut film = Film::new(SIZE).unwrap();
             let work = whole(&film, 11);
             let sampler = Uniform { cost, ..Uniform::default() };
-            pool.sample(&mut film, &sampler, &work, &|| false).cpu_seconds
+            pool.sample(&mut film, &sampler, prepared(&sampler).as_ref(), &work, &|| false)
+                .cpu_seconds
         };
         let (light, heavy) = (seconds(0), seconds(5000));
         assert!(light > 0.0 && heavy > 3.0 * light, "{light} s and {heavy} s");
@@ -289,29 +334,32 @@ mod tests {
         let after = AtomicU64::new(0);
         struct Stopping<'a>(&'a Uniform, &'a AtomicBool, &'a AtomicU64);
         impl PixelSampler for Stopping<'_> {
-            fn sample(&self, pixel: UVec2, sample: u32) -> PathSample {
+            fn sample(&self, pixel: UVec2, number: SampleNumber) -> PathSample {
                 if self.1.load(Ordering::SeqCst) {
                     self.2.fetch_add(1, Ordering::SeqCst);
                 }
                 if self.0.calls.load(Ordering::SeqCst) == 500 {
                     self.1.store(true, Ordering::SeqCst);
                 }
-                self.0.sample(pixel, sample)
+                self.0.sample(pixel, number)
             }
         }
         let pool = Pool::new(Some(threads), Priority::Background).unwrap();
         let mut film = Film::new(SIZE).unwrap();
         let work = whole(&film, 2);
         let stopping = Stopping(&sampler, &stop, &after);
-        let outcome = pool.sample(&mut film, &stopping, &work, &|| stop.load(Ordering::SeqCst));
+        let outcome =
+            pool.sample(&mut film, &stopping, prepared(&stopping).as_ref(), &work, &|| {
+                stop.load(Ordering::SeqCst)
+            });
         assert!(!outcome.complete && outcome.failure.is_none());
         assert!(after.load(Ordering::SeqCst) <= threads as u64);
         assert_eq!(film.totals.paths, sampler.calls.load(Ordering::SeqCst));
 
         // Doing the same work again gives what it would have given at once.
-        pool.sample(&mut film, &sampler, &work, &|| false);
+        pool.sample(&mut film, &sampler, prepared(&sampler).as_ref(), &work, &|| false);
         let mut straight = Film::new(SIZE).unwrap();
-        pool.sample(&mut straight, &sampler, &work, &|| false);
+        pool.sample(&mut straight, &sampler, prepared(&sampler).as_ref(), &work, &|| false);
         assert_eq!(film, straight);
     }
 
@@ -319,15 +367,15 @@ mod tests {
     fn a_panic_names_its_pixel_and_sample() {
         struct Faulty;
         impl PixelSampler for Faulty {
-            fn sample(&self, pixel: UVec2, sample: u32) -> PathSample {
-                assert!(pixel != UVec2::new(20, 30) || sample < 2, "a fault on purpose");
+            fn sample(&self, pixel: UVec2, number: SampleNumber) -> PathSample {
+                assert!(pixel != UVec2::new(20, 30) || number.index() < 2, "a fault on purpose");
                 PathSample::default()
             }
         }
         let pool = Pool::new(Some(2), Priority::Normal).unwrap();
         let mut film = Film::new(SIZE).unwrap();
         let work = whole(&film, 4);
-        let outcome = pool.sample(&mut film, &Faulty, &work, &|| false);
+        let outcome = pool.sample(&mut film, &Faulty, prepared(&Faulty).as_ref(), &work, &|| false);
         let failure = outcome.failure.unwrap();
         assert_eq!(failure.at, Some((UVec2::new(20, 30), 2)));
         assert!(!outcome.complete);

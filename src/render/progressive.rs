@@ -11,11 +11,13 @@ use super::publish::{
     Extras, Picture, RenderStats, render_stats, resolve, resolve_blocks, resolve_variance,
 };
 use super::schedule::{Limits, Next, Schedule};
-use crate::transport::PixelSampler;
+use crate::transport::{PixelSampler, Prepared};
 
 /// One render under way.
 pub struct ProgressiveRender {
     sampler: Arc<dyn PixelSampler>,
+    /// What its pilot pass found, once that has run.
+    prepared: Option<Prepared>,
     film: Film,
     schedule: Schedule,
     /// The pixels that get all samples.
@@ -53,7 +55,16 @@ impl ProgressiveRender {
         let (passes, most) = film.sample_range();
         let begun_empty = most == 0;
         let schedule = Schedule::new(film.size(), passes, limits, seconds_per_path);
-        Self { sampler, film, schedule, area: None, begun_empty, seconds: 0.0, cpu_seconds: 0.0 }
+        Self {
+            sampler,
+            prepared: None,
+            film,
+            schedule,
+            area: None,
+            begun_empty,
+            seconds: 0.0,
+            cpu_seconds: 0.0,
+        }
     }
 
     /// Gives all samples to the pixels of `area` once every pixel has one, or to all pixels.
@@ -77,7 +88,8 @@ impl ProgressiveRender {
         let (limits, cost) = (self.schedule.limits(), self.schedule.seconds_per_path());
         self.schedule = Schedule::new(self.film.size(), 0, limits, cost);
         self.schedule.focus(self.area, 0);
-        (self.sampler, self.seconds, self.cpu_seconds) = (sampler, 0.0, 0.0);
+        (self.seconds, self.cpu_seconds) = (0.0, 0.0);
+        self.go_on_with(sampler);
     }
 
     /// Counts CPU time in, in seconds, that the samples it began with took.
@@ -87,7 +99,7 @@ impl ProgressiveRender {
 
     /// Goes on with another sampler of the same picture.
     pub fn go_on_with(&mut self, sampler: Arc<dyn PixelSampler>) {
-        self.sampler = sampler;
+        (self.sampler, self.prepared) = (sampler, None);
     }
 
     /// Does the next piece of work, unless `stop` says so earlier.
@@ -103,7 +115,20 @@ impl ProgressiveRender {
             Next::Done => return RenderStep::Done,
         };
         let start = Instant::now();
-        let outcome = pool.sample(&mut self.film, &*self.sampler, &work, stop);
+        // The first sample of a pixel waits for no pilot pass.
+        if work.target > 1 && self.prepared.is_none() {
+            match pool.prepare(&*self.sampler, stop) {
+                Ok(prepared) => self.prepared = prepared,
+                Err(failure) => return RenderStep::Failed(failure),
+            }
+            self.seconds += start.elapsed().as_secs_f64();
+            if self.prepared.is_none() {
+                return RenderStep::Interrupted;
+            }
+        }
+        let start = Instant::now();
+        let prepared = self.prepared.as_ref();
+        let outcome = pool.sample(&mut self.film, &*self.sampler, prepared, &work, stop);
         let seconds = start.elapsed().as_secs_f64();
         self.seconds += seconds;
         self.cpu_seconds += outcome.cpu_seconds;
@@ -151,7 +176,7 @@ impl ProgressiveRender {
         picture.focus = self.area.map(|area| (area, self.film.fewest_samples(area)));
         picture.stats = RenderStats {
             cpu_seconds: self.cpu_seconds,
-            guided_flights: self.sampler.found_flights(),
+            guided_flights: self.prepared.and_then(|prepared| prepared.guided_flights()),
             ..render_stats(&self.film, self.seconds, noise, self.is_finished())
         };
     }

@@ -4,10 +4,10 @@ use glam::UVec2;
 use rayon::prelude::*;
 
 use super::area::Area;
+use super::coarse::{representative, shown_pixel};
 use super::estimate::{FilmStats, LineStats, PixelEstimate, samples_per_pixel};
 use super::film::Film;
 use super::layers::{Layer, LayerMap};
-use super::schedule::{COARSEST_STRIDE, representative};
 
 /// A finished image of an unfinished render.
 #[derive(Clone, Debug, Default)]
@@ -36,7 +36,7 @@ pub struct Picture {
     pub stats: RenderStats,
 }
 
-/// What a picture brings along beside its light.
+/// The data that a picture brings along beside its light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Extras {
     /// One of its layers.
@@ -79,16 +79,6 @@ pub struct RenderStats {
     pub finished: bool,
 }
 
-/// The pixel to read in place of `pixel`: itself once it has a sample, or the one that stands for
-/// the smallest sampled block around it.
-pub fn shown_pixel(film: &Film, pixel: UVec2) -> UVec2 {
-    (0..=COARSEST_STRIDE.ilog2())
-        .map(|power| 1 << power)
-        .map(|stride| representative(pixel, stride, film.size()))
-        .find(|&candidate| film.samples(candidate) > 0)
-        .unwrap_or(pixel)
-}
-
 /// Reads the picture into `pixels`, which gets the size of the film; returns the noise (see
 /// [`FilmStats::noise`]). Runs on the threads of the calling pool.
 pub fn resolve(film: &Film, pixels: &mut Vec<[f32; 4]>) -> Option<f64> {
@@ -119,7 +109,7 @@ pub fn resolve_blocks(film: &Film, side: u32, pixels: &mut Vec<[f32; 4]>) {
     });
 }
 
-/// What the samples of `pixel` show; black without any.
+/// The color that the samples of `pixel` show; black without any.
 fn color(film: &Film, pixel: UVec2) -> [f32; 4] {
     PixelEstimate::of(film, pixel).map_or([0.0; 4], |estimate| rgba(&estimate, estimate.mean()))
 }
@@ -191,8 +181,8 @@ pub(crate) fn render_stats(
 mod tests {
     use super::*;
     use crate::math::Rgb;
-    use crate::render::synthetic::Uniform;
-    use crate::transport::{PathSample, PixelSampler};
+    use crate::render::synthetic::{Uniform, sampled};
+    use crate::transport::PathSample;
 
     fn red(value: f32) -> PathSample {
         PathSample { emission: Rgb::new(value, 0.0, 0.0), alpha: 0.25, ..Default::default() }
@@ -241,13 +231,7 @@ mod tests {
     #[test]
     fn the_noise_is_that_of_the_film() {
         let size = UVec2::new(33, 20);
-        let mut film = Film::new(size).unwrap();
-        for y in 0..size.y {
-            for x in 0..size.x {
-                let pixel = UVec2::new(x, y);
-                (0..9).for_each(|s| film.add(pixel, &Uniform::default().sample(pixel, s)));
-            }
-        }
+        let film = sampled(&Uniform::default(), size, 9);
         assert_eq!(resolve(&film, &mut Vec::new()), FilmStats::of(&film).noise);
     }
 

@@ -1,4 +1,4 @@
-//! What to sample next and when to show it: pure logic, no threads and no clocks.
+//! The order of samples, and the times at which they are shown: pure logic, no threads and no clocks.
 //!
 //! The first pass visits pixels coarse to fine. At stride s each block of s × s pixels is stood for
 //! by the pixel in its middle, sampled at its own position, so nothing is thrown away; the pixels
@@ -12,13 +12,12 @@ use std::ops::Range;
 use glam::UVec2;
 
 use super::area::Area;
+use super::coarse::COARSEST_STRIDE;
 use super::film::{MAX_SAMPLES, TILE, TILE_PIXELS};
 
 /// How long the coarse picture should take, in seconds. In a drag an edit waits for two of them, or
 /// four where two renders take turns, and for a frame, which should not be more than 0.1 s.
 const COARSE_SECONDS: f64 = 0.025;
-/// The coarsest stride: 510 paths for 960 × 540 pixels.
-pub const COARSEST_STRIDE: u32 = 32;
 /// Strides that the first pass may begin with, coarse to fine.
 const FIRST_STRIDES: [u32; 4] = [COARSEST_STRIDE, 16, 8, 4];
 /// The stride to begin with while the cost of a path is unknown.
@@ -37,14 +36,6 @@ const MOST_PASSES_AT_ONCE: u32 = 64;
 /// Weight of the newest measurement in the cost of a path.
 const COST_WEIGHT: f64 = 0.3;
 
-/// The pixel that stands for the block of `stride`² pixels around `pixel`; strides are powers of 2.
-pub fn representative(pixel: UVec2, stride: u32, size: UVec2) -> UVec2 {
-    debug_assert!(stride.is_power_of_two());
-    // Divisions would be felt: every picture asks this of every pixel.
-    let corner = pixel & UVec2::splat(!(stride - 1));
-    (corner + stride / 2).min(size - UVec2::ONE)
-}
-
 /// One piece of work.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Work {
@@ -58,7 +49,7 @@ pub struct Work {
     pub area: Option<Area>,
 }
 
-/// What the schedule answers.
+/// The answer of the schedule.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Next {
     /// Do this.
@@ -314,6 +305,7 @@ fn first_stride(pixels: u64, seconds_per_path: Option<f64>) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::render::coarse::representative;
 
     const SIZE: UVec2 = UVec2::new(100, 50);
 
@@ -412,24 +404,6 @@ mod tests {
         assert_eq!(stride(Some(1e-5)), 16);
         assert_eq!(stride(Some(3e-5)), 32);
         assert_eq!(stride(Some(1.0)), 32);
-    }
-
-    #[test]
-    fn representatives_lie_in_their_blocks_and_on_the_film() {
-        for stride in [32, 16, 8, 4, 2, 1] {
-            for y in 0..SIZE.y {
-                for x in 0..SIZE.x {
-                    let pixel = UVec2::new(x, y);
-                    let middle = representative(pixel, stride, SIZE);
-                    assert_eq!(middle / stride, pixel / stride);
-                    assert!(middle.x < SIZE.x && middle.y < SIZE.y);
-                    assert_eq!(representative(middle, stride, SIZE), middle);
-                    assert!(stride > TILE || tile_of(middle) == tile_of(pixel));
-                }
-            }
-        }
-        let first = representative(UVec2::ZERO, 8, SIZE);
-        assert_eq!(first, UVec2::new(4, 4));
     }
 
     #[test]

@@ -1,15 +1,20 @@
 //! Rendering behind a window: a thread of its own that takes the latest request, refines it and
 //! hands over pictures. No call here waits for sampling.
 
+mod active;
+mod phase;
+mod request;
+mod shared;
 mod sharing;
 mod worker;
 
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::mpsc::{Receiver, Sender, channel};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::sync::mpsc::{Receiver, channel};
 use std::thread::JoinHandle;
 
-use glam::UVec2;
+pub use request::{Request, Resume};
+pub use sharing::{Sharing, TurnToken};
 
 use super::area::Area;
 use super::film::Film;
@@ -17,77 +22,13 @@ use super::pool::{Failure, Pool, Priority};
 use super::publish::{Extras, Picture};
 use crate::error::{Error, Result};
 use crate::transport::PixelSampler;
+use shared::{Improvement, Shared, lock};
 use worker::Worker;
-
-pub use sharing::{Seat, Sharing};
-
-/// Something to render.
-pub struct Request {
-    /// What to sample.
-    pub sampler: Arc<dyn PixelSampler>,
-    /// Width and height in pixels.
-    pub size: UVec2,
-    /// Samples a pixel; 0: until stopped.
-    pub spp: u32,
-    /// The caller's number, which the pictures carry.
-    pub generation: u64,
-    /// What to go on from, a film of the same size. It waits for a better sampler that is in the
-    /// making, so that the samples of two never mix.
-    pub resume: Option<Resume>,
-    /// Whether a better sampler of the same picture is in the making, which
-    /// [`Session::improve`] will bring. Until then the render is not finished, whatever its limit,
-    /// and a snapshot waits, unless it is paused.
-    pub provisional: bool,
-}
-
-/// A render to go on from.
-#[derive(Debug)]
-pub struct Resume {
-    /// The samples it has.
-    pub film: Film,
-    /// Seconds of rendering that they took.
-    pub seconds: f64,
-    /// CPU time that the sampling threads spent on them, in seconds.
-    pub cpu_seconds: f64,
-}
 
 /// A progressive render in the background. Dropping it ends it within one sample a thread.
 pub struct Session {
     shared: Arc<Shared>,
     thread: Option<JoinHandle<()>>,
-}
-
-/// What callers have asked for and the render thread has not yet seen.
-#[derive(Default)]
-struct Mail {
-    request: Option<Request>,
-    improvement: Option<Improvement>,
-    snapshots: Vec<Sender<Film>>,
-    paused: bool,
-    extras: Extras,
-    seat: Option<Seat>,
-    area: Option<Area>,
-}
-
-/// What becomes of a provisional request.
-struct Improvement {
-    generation: u64,
-    /// `None`: it stays as it is.
-    sampler: Option<Arc<dyn PixelSampler>>,
-}
-
-struct Shared {
-    mail: Mutex<Mail>,
-    bell: Condvar,
-    /// Grows with every letter; work that began under an older number breaks off.
-    epoch: AtomicU64,
-    quit: AtomicBool,
-    /// Whether an improvement came that has not been seen, for which a render that shows nothing
-    /// yet breaks off at once.
-    improved: AtomicBool,
-    latest: Mutex<Option<Arc<Picture>>>,
-    failure: Mutex<Option<(u64, Failure)>>,
-    on_publish: Box<dyn Fn() + Send + Sync>,
 }
 
 impl Session {
@@ -101,16 +42,7 @@ impl Session {
         on_publish: impl Fn() + Send + Sync + 'static,
     ) -> Result<Self> {
         let pool = Pool::new(threads, Priority::Background)?;
-        let shared = Arc::new(Shared {
-            mail: Mutex::default(),
-            bell: Condvar::new(),
-            epoch: AtomicU64::new(0),
-            quit: AtomicBool::new(false),
-            improved: AtomicBool::new(false),
-            latest: Mutex::default(),
-            failure: Mutex::default(),
-            on_publish: Box::new(on_publish),
-        });
+        let shared = Arc::new(Shared::new(on_publish));
         let worker = Worker::new(Arc::clone(&shared), pool);
         let thread = std::thread::Builder::new()
             .name("render".to_owned())
@@ -123,7 +55,7 @@ impl Session {
     /// thread (or, if it has nothing to show yet, when it has, or after a second), and
     /// a request that has not begun is dropped.
     pub fn start(&self, request: Request) {
-        self.shared.post(|mail| mail.request = Some(request));
+        self.shared.post(|mailbox| mailbox.request = Some(request));
     }
 
     /// Brings the provisional request of that generation the sampler it waits for, or says that
@@ -132,8 +64,8 @@ impl Session {
     /// it neither goes blank nor gets coarser. A paused render starts over when it is resumed. One
     /// that goes on from a film has waited for the sampler and goes on with it.
     pub fn improve(&self, generation: u64, sampler: Option<Arc<dyn PixelSampler>>) {
-        self.shared.post(|mail| {
-            mail.improvement = Some(Improvement { generation, sampler });
+        self.shared.post(|mailbox| {
+            mailbox.improvement = Some(Improvement { generation, sampler });
             self.shared.improved.store(true, Ordering::Relaxed);
         });
     }
@@ -141,25 +73,25 @@ impl Session {
     /// Holds or resumes refinement. A request started while paused still brings its first, coarse
     /// picture.
     pub fn set_paused(&self, paused: bool) {
-        self.shared.post(|mail| mail.paused = paused);
+        self.shared.post(|mailbox| mailbox.paused = paused);
     }
 
-    /// What pictures bring along beside their light. It costs a little to read, so it is left out
+    /// Sets what pictures bring along beside their light. It costs a little to read, so it is left out
     /// unless asked for; asking brings a new picture of what there is, also while paused or
     /// finished.
     pub fn set_extras(&self, extras: Extras) {
-        self.shared.post(|mail| mail.extras = extras);
+        self.shared.post(|mailbox| mailbox.extras = extras);
     }
 
-    /// Takes turns with the session of the other seat, or has the machine for itself again.
-    pub fn take_seat(&self, seat: Option<Seat>) {
-        self.shared.post(|mail| mail.seat = seat);
+    /// Takes turns with the session that has the other token, or has the machine for itself again.
+    pub fn take_turns_by(&self, token: Option<TurnToken>) {
+        self.shared.post(|mailbox| mailbox.turn_token = token);
     }
 
     /// Gives all samples to the pixels of `area` once every pixel has one, or to all pixels, which
     /// catch up. Of another film's size, it is what of it lies on that.
     pub fn focus(&self, area: Option<Area>) {
-        self.shared.post(|mail| mail.area = area);
+        self.shared.post(|mailbox| mailbox.area = area);
     }
 
     /// The latest picture. After [`Self::start`] the old one stays until the new request has its
@@ -173,7 +105,7 @@ impl Session {
     /// there is nothing to copy or no memory for it.
     pub fn snapshot(&self) -> Receiver<Film> {
         let (sender, receiver) = channel();
-        self.shared.post(|mail| mail.snapshots.push(sender));
+        self.shared.post(|mailbox| mailbox.snapshots.push(sender));
         receiver
     }
 
@@ -192,19 +124,4 @@ impl Drop for Session {
             let _ = thread.join();
         }
     }
-}
-
-impl Shared {
-    fn post(&self, change: impl FnOnce(&mut Mail)) {
-        let mut mail = lock(&self.mail);
-        change(&mut mail);
-        self.epoch.fetch_add(1, Ordering::Relaxed);
-        self.bell.notify_one();
-    }
-}
-
-/// Locks; what the mutexes guard is replaced as a whole, so a panic elsewhere cannot have left it
-/// half written.
-fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }

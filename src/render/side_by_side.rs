@@ -70,7 +70,7 @@ mod tests {
 
     use super::*;
     use crate::render::synthetic::{GrayLevel, Uniform};
-    use crate::transport::PathSample;
+    use crate::transport::{PathSample, SampleNumber};
 
     const SIZE: UVec2 = UVec2::new(40, 30);
 
@@ -130,8 +130,8 @@ mod tests {
     fn a_failure_ends_both() {
         struct Faulty;
         impl PixelSampler for Faulty {
-            fn sample(&self, _: UVec2, sample: u32) -> PathSample {
-                assert!(sample < 2, "a fault on purpose");
+            fn sample(&self, _: UVec2, number: SampleNumber) -> PathSample {
+                assert!(number.index() < 2, "a fault on purpose");
                 PathSample::default()
             }
         }

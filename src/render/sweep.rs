@@ -26,10 +26,10 @@ use super::film::Totals;
 use super::pool::{Failure, Pool};
 use super::time_slice::{Amount, RenderedSide, SideInProgress, take_turns};
 use super::turns::Usage;
-use crate::error::{Error, Result};
+use crate::error::{self, Error, Result, report};
 use crate::transport::probes::Probes;
 use crate::transport::strategy::Strategy;
-use crate::transport::{Frame, PixelSampler, Scene};
+use crate::transport::{Frame, PixelSampler, PreparedFrame, Scene, prepare};
 
 /// CPU seconds of each strategy where nobody says how many.
 pub const DEFAULT_SECONDS: f64 = 3.0;
@@ -106,9 +106,9 @@ pub fn sweep(
     interrupt: &AtomicBool,
     progress: &mut dyn FnMut(SweepProgress),
 ) -> Result<Swept> {
-    let frames = prepare(job, pool, interrupt, progress)?;
+    let frames = prepare_all(job, pool, interrupt, progress)?;
     let numbers: Vec<usize> = frames.iter().map(|(number, _)| *number).collect();
-    let begin = |(_, frame): (usize, Frame)| {
+    let begin = |(_, frame): (usize, PreparedFrame)| {
         let sampler: Arc<dyn PixelSampler> = Arc::new(frame);
         SideInProgress::new(sampler, job.size, job.amount)
     };
@@ -140,13 +140,13 @@ fn measured(rendered: &RenderedSide) -> SideFigures {
 
 /// Frames the scene with every strategy that is to be rendered; their probes, placed once for all
 /// that have the same, and their pilots are then no part of the rendering.
-fn prepare(
+fn prepare_all(
     job: &SweepJob<'_>,
     pool: &Pool,
     interrupt: &AtomicBool,
     progress: &mut dyn FnMut(SweepProgress),
-) -> Result<Vec<(usize, Frame)>> {
-    let stop = || interrupt.load(Ordering::Relaxed);
+) -> Result<Vec<(usize, PreparedFrame)>> {
+    let go_on = |_: f32| !interrupt.load(Ordering::Relaxed);
     let is_rendered = |(_, trial): &(usize, &Trial)| trial.source == TrialSource::Rendered;
     let rendered: Vec<(usize, &Trial)> =
         job.trials.iter().enumerate().filter(is_rendered).collect();
@@ -155,12 +155,14 @@ fn prepare(
     for (done, (number, trial)) in rendered.iter().enumerate() {
         progress(SweepProgress::Preparing(done, rendered.len()));
         let scene = Scene { strategy: trial.strategy, ..job.scene.clone() };
-        let probes = pool.install(|| probes(&scene, &mut known, &stop));
-        if stop() {
-            return Err(Error::Cancelled);
-        }
-        let frame = Frame::with_probes(Arc::new(scene), job.size, job.seed, probes);
-        pool.install(|| frame.guided_flights());
+        let frame = pool.install(|| {
+            let probes = probes(&scene, &mut known, &go_on)?;
+            let (scene, size) = (Arc::new(scene), job.size);
+            let frame = Frame::try_with_probes(scene, size, job.seed, probes, &go_on)?;
+            let frame = frame.prepared(&go_on)?;
+            report(&go_on, 1.0)?;
+            Ok::<_, Error>(frame)
+        })?;
         frames.push((*number, frame));
     }
     Ok(frames)
@@ -171,15 +173,15 @@ fn prepare(
 fn probes(
     scene: &Scene,
     known: &mut Vec<(Strategy, Arc<Probes>)>,
-    stop: &(dyn Fn() -> bool + Sync),
-) -> Option<Arc<Probes>> {
-    let recipe = Probes::recipe(&scene.strategy)?;
+    go_on: error::Progress,
+) -> Result<Option<Arc<Probes>>> {
+    let Some(recipe) = Probes::recipe(&scene.strategy) else { return Ok(None) };
     if let Some((_, probes)) = known.iter().find(|(other, _)| *other == recipe) {
-        return Some(probes.clone());
+        return Ok(Some(probes.clone()));
     }
-    let probes = Arc::new(Probes::unless(scene, stop)?);
-    known.push((recipe, probes.clone()));
-    Some(probes)
+    let probes = prepare::probes(scene, go_on)?.map(Arc::new);
+    known.extend(probes.clone().map(|probes| (recipe, probes)));
+    Ok(probes)
 }
 
 #[cfg(test)]

@@ -5,8 +5,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use glam::UVec2;
 
 use super::film::Film;
+use crate::error::NO_PROGRESS;
 use crate::math::Rgb;
-use crate::transport::{PathSample, PixelSampler};
+use crate::transport::{PathSample, PixelSampler, SampleNumber};
 
 /// Uniform variables on [0, 1), one for each pixel and sample, alike in all channels and spread
 /// over the four parts.
@@ -27,9 +28,9 @@ pub(crate) fn mix(seed: u64) -> u64 {
 }
 
 impl PixelSampler for Uniform {
-    fn sample(&self, pixel: UVec2, sample: u32) -> PathSample {
+    fn sample(&self, pixel: UVec2, number: SampleNumber) -> PathSample {
         self.calls.fetch_add(1, Ordering::Relaxed);
-        let key = u64::from(pixel.x) | u64::from(pixel.y) << 20 | u64::from(sample) << 40;
+        let key = u64::from(pixel.x) | u64::from(pixel.y) << 20 | u64::from(number.index()) << 40;
         let bits = (0..self.cost).fold(mix(key), |bits, _| std::hint::black_box(mix(bits)));
         let _ = bits;
         let value = (mix(key) >> 40) as f32 / (1u64 << 24) as f32;
@@ -63,8 +64,8 @@ pub(crate) struct GrayLevel {
 }
 
 impl PixelSampler for GrayLevel {
-    fn sample(&self, pixel: UVec2, sample: u32) -> PathSample {
-        gray(self.mean + self.spread * (uniform(self.seed, pixel, sample) - 0.5))
+    fn sample(&self, pixel: UVec2, number: SampleNumber) -> PathSample {
+        gray(self.mean + self.spread * (uniform(self.seed, pixel, number.index()) - 0.5))
     }
 }
 
@@ -77,8 +78,8 @@ pub(crate) struct Fireflies {
 }
 
 impl PixelSampler for Fireflies {
-    fn sample(&self, pixel: UVec2, sample: u32) -> PathSample {
-        let is_lit = uniform(self.seed, pixel, sample) < self.chance;
+    fn sample(&self, pixel: UVec2, number: SampleNumber) -> PathSample {
+        let is_lit = uniform(self.seed, pixel, number.index()) < self.chance;
         gray(if is_lit { self.mean / self.chance } else { 0.0 })
     }
 }
@@ -92,13 +93,21 @@ fn uniform(seed: u64, pixel: UVec2, sample: u32) -> f32 {
     (mix(key ^ mix(seed)) >> 40) as f32 / (1u64 << 24) as f32
 }
 
+/// Sample `index` of a pixel.
+pub(crate) fn sample_of(sampler: &impl PixelSampler, pixel: UVec2, index: u32) -> PathSample {
+    let prepared = sampler.prepare(NO_PROGRESS).unwrap();
+    sampler.sample(pixel, SampleNumber::new(index, &prepared))
+}
+
 /// A film with so many samples of every pixel.
 pub(crate) fn sampled(sampler: &impl PixelSampler, size: UVec2, samples: u32) -> Film {
     let mut film = Film::new(size).unwrap();
     for y in 0..size.y {
         for x in 0..size.x {
             let pixel = UVec2::new(x, y);
-            (0..samples).for_each(|s| film.add(pixel, &sampler.sample(pixel, s)));
+            for index in 0..samples {
+                film.add(pixel, &sample_of(sampler, pixel, index));
+            }
         }
     }
     film

@@ -1,4 +1,4 @@
-//! Several renders of one scene on the same threads and in turns, so that all have had the same
+//! Several renders of one scene that take turns on the same threads, so that all have had the same
 //! share whenever they are compared.
 
 use std::sync::Arc;
@@ -16,7 +16,7 @@ use super::turns::{self, Share, Usage};
 use crate::error::Result;
 use crate::transport::PixelSampler;
 
-/// What became of one side.
+/// A side after its last turn.
 pub struct RenderedSide {
     /// The film, consistent however the render ended.
     pub film: Film,
@@ -46,9 +46,9 @@ pub struct Amount {
 
 impl Amount {
     /// How much of it a side has had, in 0..=1; 0 where there is no limit.
-    pub fn part(&self, account: &Usage) -> f64 {
-        let by_samples = if self.spp > 0 { account.samples / f64::from(self.spp) } else { 0.0 };
-        let by_time = self.cpu_seconds.map_or(0.0, |end| account.cpu_seconds / end);
+    pub fn part(&self, usage: &Usage) -> f64 {
+        let by_samples = if self.spp > 0 { usage.samples / f64::from(self.spp) } else { 0.0 };
+        let by_time = self.cpu_seconds.map_or(0.0, |end| usage.cpu_seconds / end);
         by_samples.max(by_time).min(1.0)
     }
 
@@ -69,25 +69,25 @@ pub(super) fn take_turns(
     let by_time = sides.iter().any(|side| side.amount.cpu_seconds.is_some());
     let share = if by_time { Share::CpuTime } else { Share::Samples };
     let stop = || interrupt.load(Ordering::Relaxed);
-    let mut accounts = vec![Usage::default(); sides.len()];
-    while let Some(next) = turns::next(&accounts, share) {
+    let mut usages = vec![Usage::default(); sides.len()];
+    while let Some(next) = turns::next(&usages, share) {
         if stop() {
             return true;
         }
         let side = &mut sides[next];
         side.turn(pool, &stop);
-        accounts[next] = side.account();
+        usages[next] = side.usage();
         if side.failure.is_some() {
             break;
         }
-        progress(&accounts);
+        progress(&usages);
     }
     false
 }
 
 /// A side under way.
 pub(super) struct SideInProgress {
-    engine: ProgressiveRender,
+    render: ProgressiveRender,
     amount: Amount,
     history: NoiseHistory,
     closed: bool,
@@ -100,25 +100,25 @@ impl SideInProgress {
     /// # Errors
     /// When its film does not fit the memory.
     pub fn new(sampler: Arc<dyn PixelSampler>, size: UVec2, amount: Amount) -> Result<Self> {
-        let engine = ProgressiveRender::new(sampler, Film::new(size)?, amount.limits(), None);
+        let render = ProgressiveRender::new(sampler, Film::new(size)?, amount.limits(), None);
         let history = NoiseHistory::default();
-        Ok(Self { engine, amount, history, closed: false, failure: None })
+        Ok(Self { render, amount, history, closed: false, failure: None })
     }
 
     /// Does one piece of work, no longer than what is left of its CPU time.
     fn turn(&mut self, pool: &Pool, stop: &(dyn Fn() -> bool + Sync)) {
         if let Some(all) = self.amount.cpu_seconds {
-            let left = all - self.engine.cpu_seconds();
-            self.engine.set_limits(self.limits(left, pool.threads()));
+            let left = all - self.render.cpu_seconds();
+            self.render.set_limits(self.limits(left, pool.threads()));
         }
-        match self.engine.step(pool, false, stop) {
+        match self.render.step(pool, false, stop) {
             RenderStep::Worked | RenderStep::Interrupted => {}
             RenderStep::Paused | RenderStep::Done => self.closed = true,
             RenderStep::Failed(failure) => (self.closed, self.failure) = (true, Some(failure)),
         }
-        let is_over = |all: f64| self.engine.cpu_seconds() >= all;
+        let is_over = |all: f64| self.render.cpu_seconds() >= all;
         self.closed |= self.amount.cpu_seconds.is_some_and(is_over) && !self.is_uneven();
-        if self.history.wants(self.engine.cpu_seconds()) {
+        if self.history.wants(self.render.cpu_seconds()) {
             self.note_noise(pool);
         }
     }
@@ -129,35 +129,35 @@ impl SideInProgress {
         let limits = self.amount.limits();
         if left > 0.0 {
             // The schedule counts seconds in which all threads work.
-            let seconds = Some(self.engine.seconds() + left / threads as f64);
+            let seconds = Some(self.render.seconds() + left / threads as f64);
             return Limits { seconds, ..limits };
         }
-        let (_, most) = self.engine.film().sample_range();
+        let (_, most) = self.render.film().sample_range();
         Limits { spp: most.max(FEWEST_FOR_VARIANCE), seconds: None }
     }
 
     /// Whether some pixels still lack samples that others have.
     fn is_uneven(&self) -> bool {
-        let (fewest, most) = self.engine.film().sample_range();
+        let (fewest, most) = self.render.film().sample_range();
         self.amount.evenly && (fewest < most || fewest < FEWEST_FOR_VARIANCE)
     }
 
     /// Adds the present noise to the history, if every pixel has one.
     fn note_noise(&mut self, pool: &Pool) {
-        let film = self.engine.film();
+        let film = self.render.film();
         let (fewest, _) = film.sample_range();
         if fewest < FEWEST_FOR_VARIANCE {
             return;
         }
         if let Some(noise) = pool.install(|| FilmStats::of(film)).noise {
-            self.history.push(self.engine.cpu_seconds(), noise);
+            self.history.push(self.render.cpu_seconds(), noise);
         }
     }
 
-    fn account(&self) -> Usage {
+    fn usage(&self) -> Usage {
         Usage {
-            cpu_seconds: self.engine.cpu_seconds(),
-            samples: samples_per_pixel(self.engine.film()),
+            cpu_seconds: self.render.cpu_seconds(),
+            samples: samples_per_pixel(self.render.film()),
             closed: self.closed,
         }
     }
@@ -165,8 +165,8 @@ impl SideInProgress {
     /// Ends it.
     pub fn finish(mut self, pool: &Pool) -> RenderedSide {
         self.note_noise(pool);
-        let (cpu_seconds, seconds) = (self.engine.cpu_seconds(), self.engine.seconds());
-        let (film, _) = self.engine.into_parts();
+        let (cpu_seconds, seconds) = (self.render.cpu_seconds(), self.render.seconds());
+        let (film, _) = self.render.into_parts();
         RenderedSide { film, cpu_seconds, seconds, history: self.history, failure: self.failure }
     }
 }

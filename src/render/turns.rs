@@ -3,7 +3,7 @@
 //! The next piece of work goes to the side that has had least so far. A piece never lasts longer
 //! than the schedule lets it, so sides are never further apart than one piece of one of them.
 
-/// What one side has had so far.
+/// The use that one side has made of the machine so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Usage {
     /// CPU time of the sampling threads, in seconds.
@@ -14,7 +14,7 @@ pub struct Usage {
     pub closed: bool,
 }
 
-/// What the sides get equal shares of.
+/// The quantity that the sides get equal shares of.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Share {
     /// CPU time: which side makes more of it?
@@ -35,8 +35,8 @@ impl Usage {
 
 /// The side whose turn it is: of those not closed the one that has had least, of several the first.
 /// `None` when all are closed.
-pub fn next(accounts: &[Usage], share: Share) -> Option<usize> {
-    let open = accounts.iter().enumerate().filter(|(_, account)| !account.closed);
+pub fn next(usages: &[Usage], share: Share) -> Option<usize> {
+    let open = usages.iter().enumerate().filter(|(_, usage)| !usage.closed);
     open.min_by(|(_, a), (_, b)| a.had(share).total_cmp(&b.had(share))).map(|(side, _)| side)
 }
 
@@ -46,13 +46,13 @@ mod tests {
 
     /// Gives out turns of `pieces` (seconds, samples) a side until `turns` are over.
     fn play(pieces: [(f64, f64); 2], share: Share, turns: usize) -> [Usage; 2] {
-        let mut accounts = [Usage::default(); 2];
+        let mut usages = [Usage::default(); 2];
         for _ in 0..turns {
-            let side = next(&accounts, share).unwrap();
-            accounts[side].cpu_seconds += pieces[side].0;
-            accounts[side].samples += pieces[side].1;
+            let side = next(&usages, share).unwrap();
+            usages[side].cpu_seconds += pieces[side].0;
+            usages[side].samples += pieces[side].1;
         }
-        accounts
+        usages
     }
 
     #[test]
@@ -70,26 +70,26 @@ mod tests {
     #[test]
     fn many_sides_stay_within_the_longest_piece_of_each_other() {
         let pieces = [0.02, 0.31, 0.07, 0.11, 0.05, 0.19, 0.03, 0.23, 0.13, 0.017, 0.29, 0.041];
-        let mut accounts = [Usage::default(); 12];
+        let mut usages = [Usage::default(); 12];
         for _ in 0..2000 {
-            let side = next(&accounts, Share::CpuTime).unwrap();
-            accounts[side].cpu_seconds += pieces[side];
-            accounts[side].closed = side % 4 == 1 && accounts[side].cpu_seconds > 3.0;
-            let open = || accounts.iter().filter(|account| !account.closed);
-            let had = || open().map(|account| account.cpu_seconds);
+            let side = next(&usages, Share::CpuTime).unwrap();
+            usages[side].cpu_seconds += pieces[side];
+            usages[side].closed = side % 4 == 1 && usages[side].cpu_seconds > 3.0;
+            let open = || usages.iter().filter(|usage| !usage.closed);
+            let had = || open().map(|usage| usage.cpu_seconds);
             let [least, most] = [had().fold(f64::MAX, f64::min), had().fold(0.0, f64::max)];
-            assert!(most - least <= 0.31 + 1e-9, "{accounts:?}");
+            assert!(most - least <= 0.31 + 1e-9, "{usages:?}");
         }
-        assert!(accounts.iter().filter(|account| account.closed).count() == 3);
+        assert!(usages.iter().filter(|usage| usage.closed).count() == 3);
     }
 
     #[test]
     fn the_first_begins_and_equal_sides_alternate() {
-        let mut accounts = [Usage::default(); 2];
+        let mut usages = [Usage::default(); 2];
         let mut order = Vec::new();
         for _ in 0..6 {
-            let side = next(&accounts, Share::Samples).unwrap();
-            accounts[side].samples += 1.0;
+            let side = next(&usages, Share::Samples).unwrap();
+            usages[side].samples += 1.0;
             order.push(side);
         }
         assert_eq!(order, [0, 1, 0, 1, 0, 1]);

@@ -1,12 +1,12 @@
-//! What artists add to a shot most: lights and a floor, placed and measured so that they show.
+//! The things that artists add to a shot most: lights and a floor, placed and measured so that they show.
 
 use glam::Vec3A;
 
-use super::guess::two_digits;
 use super::settings::{
     CameraSettings, Color, Extent, LightKind, LightSettings, MaterialSettings, SurfaceSettings,
     SurfaceShape,
 };
+use crate::format::two_digits;
 use crate::math::Aabb;
 
 /// The irradiance that a new light brings to the middle of the picture.

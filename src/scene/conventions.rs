@@ -1,52 +1,11 @@
-//! What programs call the grids of their volumes, which way is up in their files, and what their
-//! temperatures mean. The one place of that knowledge.
+//! The programs that simulate fire and smoke: which way is up in their files, and which of their
+//! grids are drawn.
 
-use super::GridDescription;
-use super::guess::two_digits;
+use super::describe::GridDescription;
+use super::grid_names::{BLENDER_KELVIN, KELVIN_FROM, hottest};
 use super::role::Role;
 use super::settings::{Axis, VolumeSettings};
 use crate::volume::vdb::{Directory, MetaValue};
-
-/// Grids of smoke.
-pub(super) const DENSITY: &[&str] =
-    &["density", "smoke", "soot", "fog", "cloud", "density_noise", "vapour"];
-/// Grids of emission itself.
-pub(super) const EMISSION: &[&str] = &["emission", "emit", "ce", "le", "incandescence"];
-/// Grids of temperatures.
-pub(super) const TEMPERATURE: &[&str] = &["temperature", "temp", "heat", "kelvin"];
-/// Grids that say how much flame there is.
-pub(super) const FLAME: &[&str] = &["flame", "flames", "fire", "burn", "flame_noise"];
-/// Grids that simulations write beside those that are seen.
-pub(super) const OTHER: &[&str] = &[
-    "velocity",
-    "vel",
-    "v",
-    "shadow",
-    "color",
-    "colour",
-    "color_r",
-    "color_g",
-    "color_b",
-    "cd",
-    "fuel",
-    "fuel_noise",
-    "react",
-    "pressure",
-    "flags",
-    "phi",
-    "collision",
-    "divergence",
-    "age",
-];
-
-/// Above this a temperature is in kelvin.
-const KELVIN_FROM: f32 = 200.0;
-/// Kelvin of the hottest place of a temperature whose unit is not known.
-const HOTTEST_KELVIN: f32 = 2500.0;
-/// Kelvin per unit of Blender's temperature, which goes from 0 to about 3.
-const BLENDER_KELVIN: f32 = 1000.0;
-/// The largest values by which Blender's temperature is known.
-const BLENDER_HOTTEST: std::ops::RangeInclusive<f32> = 1.2..=5.0;
 
 /// A program that simulates fire and smoke.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,7 +22,7 @@ impl Program {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::Blender, Self::Houdini, Self::EmberGen];
 
-    /// What people call it.
+    /// Its name.
     pub fn name(self) -> &'static str {
         match self {
             Self::Blender => "Blender",
@@ -139,19 +98,6 @@ impl Program {
     }
 }
 
-/// Kelvin per unit of a temperature that reaches up to `max`.
-pub(super) fn kelvin_scale(max: f32) -> f32 {
-    match max {
-        _ if max > KELVIN_FROM => 1.0,
-        _ if BLENDER_HOTTEST.contains(&max) => BLENDER_KELVIN,
-        _ => hottest(max),
-    }
-}
-
-fn hottest(max: f32) -> f32 {
-    if max > 0.0 { two_digits(HOTTEST_KELVIN / max) } else { 1.0 }
-}
-
 /// The rotation, in degrees about x, y and z, that puts a file with `up` on its feet: the world's z
 /// is up.
 pub fn upright(up: Axis) -> [f32; 3] {
@@ -167,9 +113,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn temperatures_are_told_by_their_largest_value() {
-        assert_eq!([2000.0, 2.96, 0.5].map(kelvin_scale), [1.0, 1000.0, 5000.0]);
-        assert_eq!(kelvin_scale(0.0), 1.0);
+    fn programs_have_their_own_units_of_temperature() {
         assert_eq!(Program::Blender.kelvin_scale(0.5), 1000.0);
         assert_eq!(Program::Houdini.kelvin_scale(2.5), 1000.0);
         assert_eq!(Program::Houdini.kelvin_scale(1800.0), 1.0);

@@ -1,11 +1,11 @@
-//! What a volume file holds, for people: its grids with their sizes and ranges.
+//! The description of a volume file for people: its grids with their sizes and ranges.
 
 use serde::Serialize;
 
-use super::VolumeCache;
-use super::cache::{GridValues, PlacedGrid, VolumeFile};
-use super::guess::grid_bounds;
+use super::cache::{GridValues, PlacedGrid, VolumeCache, VolumeFile};
+use super::frame::bounds_in_world;
 use crate::error::{Progress, Result};
+use crate::math::Aabb;
 use crate::volume::grid::Histogram;
 use crate::volume::vdb::GridInfo;
 
@@ -25,9 +25,9 @@ pub struct FileDescription {
 pub struct GridDescription {
     /// Its name.
     pub name: String,
-    /// What it stores: `float`, `half float`, `vec3`, ... as the file says.
+    /// The type of its values: `float`, `half float`, `vec3`, ... as the file says.
     pub type_name: String,
-    /// What it is meant to be: `fog volume`, `level set`, ...
+    /// The class that the file gives it: `fog volume`, `level set`, ...
     pub class: String,
     /// Edges of a voxel in the file's space.
     pub voxel_size: [f64; 3],
@@ -127,4 +127,11 @@ fn voxels(grid: &PlacedGrid) -> VoxelDescription {
             }
         }
     }
+}
+
+/// The box around a grid's stored voxels, in the file's space.
+pub(super) fn grid_bounds(grid: &PlacedGrid) -> Option<Aabb> {
+    let bounds = grid.bounds()?;
+    let world_from_index = grid.world_from_index.as_affine3a();
+    Some(bounds_in_world(bounds.min.as_vec3(), bounds.max.as_vec3(), &world_from_index))
 }

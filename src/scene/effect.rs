@@ -9,7 +9,7 @@ use crate::transport::toggle::Toggle;
 
 /// Why most toggles are idle with ray marching.
 const MARCHING: &str =
-    "ray marching (Advanced) collects glow and chooses distances in its own way.";
+    "ray marching (Advanced) collects emission and samples distances in its own way.";
 
 /// Why `toggle` makes no difference to noise or cost in this scene; `None` where it does.
 pub fn no_effect(toggle: Toggle, settings: &Settings) -> Option<&'static str> {
@@ -26,19 +26,19 @@ pub fn no_effect(toggle: Toggle, settings: &Settings) -> Option<&'static str> {
     match toggle {
         Toggle::EmissionRatioTracking => None,
         Toggle::EmissionDecoupling if strategy.emission_ratio_tracking => {
-            Some("ratio tracking already collects the glow, in a walk of its own.")
+            Some("ratio tracking already collects the emission, by a walk of its own.")
         }
         Toggle::EmissionDecoupling => None,
         Toggle::MajorantBoost if strategy.advanced.boost_amount <= 0.0 => {
             Some("the boost amount is 0.")
         }
         Toggle::MajorantBoost if !reads_the_glow_in_steps(settings) => Some(
-            "it needs decoupling, ratio tracking or fire as a light (line), which read the glow at \
-             every step.",
+            "it needs decoupling, ratio tracking or fire as a light (line), which collect emission \
+             at every step.",
         ),
         Toggle::MajorantBoost => None,
         Toggle::FireAsLight if !turns_light(settings) => {
-            Some("nothing here scatters or reflects light, so fire is only seen directly.")
+            Some("nothing in this scene scatters or reflects light, so fire is only seen directly.")
         }
         Toggle::FireAsLight | Toggle::Probes => None,
     }
@@ -55,7 +55,7 @@ pub fn no_effect_with(
 
 fn probes_without_effect(settings: &Settings) -> Option<&'static str> {
     if settings.strategy.advanced.distance == Distance::Null {
-        Some("the distance is chosen by chance alone (Advanced).")
+        Some("distances are drawn by null-collision sampling alone (Advanced).")
     } else if !settings.volume.iter().any(scatters) {
         Some("no volume in this scene scatters light.")
     } else {

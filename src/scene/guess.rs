@@ -1,24 +1,27 @@
 //! A bare volume in place of a scene: what its grids are, which way is up, how thick and bright it
 //! should look, and where to look from. Every guess is an ordinary setting, and is told in words.
 
-mod glow;
+mod emission;
+mod note;
 mod probe;
 mod roles;
 
 use std::sync::Arc;
 
-use super::cache::{PlacedGrid, VolumeFile};
+use super::cache::VolumeFile;
 use super::conventions::{Program, upright};
+use super::describe::grid_bounds;
 use super::embedded::short_name;
-use super::frame::{bounds_in_world, frame};
+use super::frame::frame;
 use super::settings::{
     Albedo, Axis, CameraSettings, Color, DensitySettings, LightKind, LightSettings, PhaseSettings,
     Settings, VolumeSettings,
 };
 use crate::error::{Error, Progress, Result};
+use crate::format::two_digits;
 use crate::math::Aabb;
-pub(super) use probe::two_digits;
-use probe::{columns, quantile, visible_bounds};
+pub use note::{About, Note};
+use probe::{FAIRLY, columns, quantile, visible_bounds};
 use roles::Candidate;
 
 /// A scene made up for a bare volume.
@@ -28,40 +31,6 @@ pub struct Guess {
     pub settings: Settings,
     /// The guesses in words.
     pub notes: Vec<Note>,
-}
-
-/// What a guess is about.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum About {
-    /// Which axis of the file points up.
-    UpAxis,
-    /// Which grid is the density and how thick it is.
-    Density,
-    /// Which grid glows, and how.
-    Glow,
-    /// What lights a volume that does not glow.
-    Light,
-}
-
-/// A guess in words.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Note {
-    /// What it is about.
-    pub about: About,
-    /// What was guessed.
-    pub text: String,
-}
-
-impl Note {
-    fn new(about: About, text: impl Into<String>) -> Self {
-        Self { about, text: text.into() }
-    }
-}
-
-impl std::fmt::Display for Note {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "guessed: {}", self.text)
-    }
 }
 
 /// How a volume should look.
@@ -89,8 +58,6 @@ const FIRE_SMOKE: Appearance = Appearance { words: &[], depth: 4.0, albedo: 0.5,
 const SOOT: Appearance = Appearance { words: &[], depth: 0.4, albedo: 0.3, radiance: 0.9 };
 /// A density that is nowhere above this is soot, if there is fire.
 const SOOT_BELOW: f32 = 0.3;
-/// The lines of sight that count as fairly thick and fairly bright.
-const FAIRLY: f32 = 0.8;
 /// Makes up a scene for `file`.
 ///
 /// # Errors
@@ -98,16 +65,16 @@ const FAIRLY: f32 = 0.8;
 pub(super) fn guess(file: &Arc<VolumeFile>, progress: Progress) -> Result<Guess> {
     let grids = load(file, progress)?;
     let density = roles::density(&grids);
-    let glow = roles::glow(&grids);
+    let emission = roles::emission(&grids);
     let mut notes = Vec::new();
-    let seen: Vec<&Candidate> = density.into_iter().chain(glow.as_ref().map(|g| g.0)).collect();
+    let seen: Vec<&Candidate> = density.into_iter().chain(emission.map(|e| e.0)).collect();
     let Some(bounds) = bounds_of(&seen) else { return Err(nothing_to_see(file)) };
     let is_y_up = is_y_up(file, &bounds, &mut notes);
     // The line of sight of the default camera, in the file's own space.
     let axis = if is_y_up { 2 } else { 1 };
 
     let name = short_name(file.name());
-    let look = look_of(name, density, glow.is_some());
+    let look = look_of(name, density, emission.is_some());
     let mut volume = VolumeSettings {
         name: name.to_owned(),
         file: Some(file.name().to_owned()),
@@ -117,9 +84,9 @@ pub(super) fn guess(file: &Arc<VolumeFile>, progress: Progress) -> Result<Guess>
     };
     volume.rotate = upright(if is_y_up { Axis::Y } else { Axis::Z });
     volume.density = density_settings(density, look.depth, &bounds, axis, &mut notes);
-    if let Some((grid, role)) = glow {
+    if let Some((grid, role)) = emission {
         volume.emission =
-            glow::emission_settings(grid, role, look.radiance, &bounds, axis, &mut notes);
+            emission::emission_settings(grid, role, look.radiance, &bounds, axis, &mut notes);
     }
 
     let mut settings = Settings::default();
@@ -127,9 +94,9 @@ pub(super) fn guess(file: &Arc<VolumeFile>, progress: Progress) -> Result<Guess>
     let visible = visible.reduce(|a, b| a.union(&b)).unwrap_or(bounds);
     let world_bounds = visible.transformed(&super::assemble::world_from_file(&volume));
     settings.camera = default_camera(&settings, &world_bounds);
-    if glow.is_none() {
+    if emission.is_none() {
         daylight(&mut settings);
-        notes.push(Note::new(About::Light, "nothing glows, so there is a sun and a sky"));
+        notes.push(Note::new(About::Light, "nothing emits light, so a sun and a sky were added"));
     }
     settings.volume.push(volume);
     Ok(Guess { settings, notes })
@@ -159,7 +126,8 @@ fn nothing_to_see(file: &VolumeFile) -> Error {
         "there are no grids in this file; export it again".to_owned()
     } else {
         format!(
-            "no grid can be shown as fog or fire: {}; export a fog volume with values above zero",
+            "no grid can be rendered as smoke or fire: {}; export a fog volume with values above \
+             zero",
             grids.join(", ")
         )
     };
@@ -172,18 +140,11 @@ fn bounds_of(grids: &[&Candidate]) -> Option<Aabb> {
     boxes.reduce(|a, b| a.union(&b))
 }
 
-/// The box around a grid's stored voxels, in the file's space.
-pub(super) fn grid_bounds(grid: &PlacedGrid) -> Option<Aabb> {
-    let bounds = grid.bounds()?;
-    let world_from_index = grid.world_from_index.as_affine3a();
-    Some(bounds_in_world(bounds.min.as_vec3(), bounds.max.as_vec3(), &world_from_index))
-}
-
 /// Programs have habits; files of none of them stand on the ground of one of the axes.
 fn is_y_up(file: &VolumeFile, bounds: &Aabb, notes: &mut Vec<Note>) -> bool {
     let (is_y_up, why) = match Program::of(file.directory()) {
-        Some(program) => (program.up() == Axis::Y, format!("{} wrote it", program.name())),
-        None => (stands_on_y(bounds), "from where it stands".to_owned()),
+        Some(program) => (program.up() == Axis::Y, format!("exported by {}", program.name())),
+        None => (stands_on_y(bounds), "from its position".to_owned()),
     };
     let axis = if is_y_up { "y" } else { "z" };
     notes.push(Note::new(About::UpAxis, format!("{axis} is up ({why})")));
@@ -215,13 +176,13 @@ fn density_settings(
     notes: &mut Vec<Note>,
 ) -> DensitySettings {
     let Some(density) = density else {
-        notes.push(Note::new(About::Density, "there is no density, only fire"));
+        notes.push(Note::new(About::Density, "no density grid, only fire"));
         return DensitySettings { grid: None, scale: Color::Gray(0.0) };
     };
     let depths = columns(&density.grid, bounds, axis, |value| value.x.max(0.0));
     let scale = quantile(&depths, FAIRLY).map_or(1.0, |depth| two_digits(wanted_depth / depth));
     let name = &density.grid.name;
-    let text = format!("\"{name}\" is the density, made {scale} times as thick");
+    let text = format!("\"{name}\" is the density (density × {scale})");
     notes.push(Note::new(About::Density, text));
     DensitySettings { grid: Some(name.clone()), scale: Color::Gray(scale) }
 }

@@ -16,6 +16,7 @@ mod embedded;
 mod files;
 mod fingerprints;
 mod frame;
+mod grid_names;
 mod guess;
 pub mod keys;
 mod load;

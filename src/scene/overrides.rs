@@ -1,4 +1,4 @@
-//! What is laid over a scene: `--preset NAME`, then each `--set key.path=value`.
+//! Changes that are laid over a scene: `--preset NAME`, then each `--set key.path=value`.
 
 use serde_json::Value as Schema;
 use toml::{Table, Value};
@@ -6,12 +6,14 @@ use toml::{Table, Value};
 use super::check::broken_condition;
 use super::files;
 use super::keys::join;
-use super::parse::OVERRIDES;
 use super::schema;
 use crate::error::{Error, Result};
 use crate::transport::strategy::{Preset, Strategy};
 
-/// What is laid over a scene, in the order of its fields.
+/// The name of overrides in errors.
+pub(super) const OVERRIDES: &str = "--set";
+
+/// Changes that are laid over a scene, in the order of its fields.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Overrides {
     /// Replaces the scene's toggles; its advanced choices stay.

@@ -5,13 +5,10 @@ use std::path::Path;
 use serde::Deserialize;
 use toml::{Table, Value};
 
-use super::overrides::{Overrides, drop_all_stray, expand_preset};
+use super::overrides::{OVERRIDES, Overrides, drop_all_stray, expand_preset};
 use super::settings::Settings;
 use super::{check, files, rules, schema};
 use crate::error::{Error, Result};
-
-/// What overrides are called in errors.
-pub(super) const OVERRIDES: &str = "--set";
 
 /// Reads a scene's TOML with `overrides` laid over it. `source` names the text in errors; relative
 /// file names start from `folder`.

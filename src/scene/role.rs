@@ -1,23 +1,23 @@
-//! What a grid of a file is for in a volume, and how to hand it that.
+//! The role of a grid of a file in a volume, and how to give it that role.
 
-use super::GridDescription;
-use super::conventions::{self, kelvin_scale};
-use super::guess::two_digits;
+use super::describe::GridDescription;
+use super::grid_names::{self, kelvin_scale};
 use super::settings::{Color, EmissionMode, EmissionSettings, Normalize, VolumeSettings};
+use crate::format::two_digits;
 
 /// The optical depth that smoke gets along the shortest edge of its box where it had none.
 const DEPTH: f32 = 4.0;
 
-/// What a grid is for.
+/// The role of a grid in a volume.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// How thick the smoke is.
+    /// The thickness of smoke.
     Density,
-    /// A temperature, which glows as a black body.
+    /// A temperature, which emits as a black body.
     Temperature,
-    /// How much flame there is, which glows through a ramp of colors.
+    /// The amount of flame, which emits through a ramp of colors.
     Flame,
-    /// What glows, as it is.
+    /// The emission itself.
     Emission,
 }
 
@@ -25,17 +25,17 @@ impl Role {
     /// All of them.
     pub const ALL: [Self; 4] = [Self::Density, Self::Temperature, Self::Flame, Self::Emission];
 
-    /// What grids of this kind are called, the best name first.
+    /// The names of grids with this role, the best first.
     pub(super) fn names(self) -> &'static [&'static str] {
         match self {
-            Self::Density => conventions::DENSITY,
-            Self::Temperature => conventions::TEMPERATURE,
-            Self::Flame => conventions::FLAME,
-            Self::Emission => conventions::EMISSION,
+            Self::Density => grid_names::DENSITY,
+            Self::Temperature => grid_names::TEMPERATURE,
+            Self::Flame => grid_names::FLAME,
+            Self::Emission => grid_names::EMISSION,
         }
     }
 
-    /// Whether a grid can be that: grids of numbers can be anything, colors only emission.
+    /// Whether a grid can have the role: grids of numbers can be anything, colors only emission.
     pub fn suits(self, grid: &GridDescription) -> bool {
         let fits = |is_vector: bool| self == Self::Emission || !is_vector;
         grid.class != "level set" && grid.voxels.is_some_and(|voxels| fits(voxels.is_vector))
@@ -58,7 +58,7 @@ impl Role {
         }
     }
 
-    /// What a grid is for that a mode of emission reads; `None` if it reads none.
+    /// The role of the grid that a mode of emission reads; `None` if it reads none.
     pub fn of_mode(mode: EmissionMode) -> Option<Self> {
         Self::ALL.into_iter().find(|role| role.mode() == Some(mode))
     }

@@ -5,24 +5,11 @@
 //! bound every number of a key; `unit` names its unit; `default` is what an absent key means;
 //! `only` lists the choices (`shape = "sphere"`) that a key belongs to.
 
-/// A method for each optional key: its value, or the default that its schema names too.
-macro_rules! or_default {
-    (impl $settings:ty { $($key:ident: $type:ty = $default:expr;)* }) => {
-        impl $settings {
-            $(
-                #[doc = concat!("`", stringify!($key), "`, or its default.")]
-                pub fn $key(&self) -> $type {
-                    self.$key.unwrap_or($default)
-                }
-            )*
-        }
-    };
-}
-
 mod camera;
 mod emission;
 mod film;
 mod light;
+mod or_default;
 mod surface;
 mod values;
 mod volume;
@@ -44,21 +31,21 @@ use crate::transport::strategy::Strategy;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Settings {
-    /// Where the picture is taken from.
+    /// The camera.
     pub camera: CameraSettings,
-    /// The picture itself.
+    /// The film: render size, seed and samples.
     pub film: FilmSettings,
-    /// How far paths go.
+    /// The length of paths.
     pub path: PathSettings,
-    /// The light that comes from everywhere around.
+    /// The sky: light from all directions.
     pub environment: EnvironmentSettings,
     /// Fire, smoke, fog and clouds. Where they overlap, they add.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub volume: Vec<VolumeSettings>,
-    /// Lights beside the fire itself.
+    /// Lights besides the fire itself.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub light: Vec<LightSettings>,
-    /// Solid things: floors, walls, spheres, boxes.
+    /// Surfaces: floors, walls, spheres, boxes.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub surface: Vec<SurfaceSettings>,
     /// Which sampling strategies are on.

@@ -1,13 +1,15 @@
 //! Surfaces: shapes, their materials, and the nearest one along a ray.
 
 mod bsdf;
+mod hit;
 mod quad;
 mod shape;
 mod sphere;
 
 pub use bsdf::{Bsdf, Material};
+pub use hit::{Hit, SurfacePoint};
 pub use quad::Quad;
-pub use shape::{Hit, Shape, SurfacePoint};
+pub use shape::Shape;
 pub use sphere::Sphere;
 
 use crate::math::{Ray, Rgb};

@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3A};
 
-use super::{Hit, SurfacePoint, shape::pdf_from_area};
+use super::hit::{Hit, SurfacePoint, pdf_from_area};
 use crate::math::{Aabb, Ray};
 
 /// A parallelogram: the points `center + a · edge_u + b · edge_v` with a and b in [−1, 1].

@@ -2,14 +2,13 @@
 
 use glam::{Vec2, Vec3A};
 
-use super::{Quad, Sphere};
+use super::hit::{Hit, SurfacePoint, pdf_from_area};
+use super::quad::Quad;
+use super::sphere::Sphere;
 use crate::{
     math::{Aabb, OrthonormalBasis, Ray},
     sampling::warp::uniform_sphere,
 };
-
-/// Rounding of a hit point relative to the numbers it was computed from, with room to spare.
-const RELATIVE_ERROR: f32 = 64.0 * f32::EPSILON;
 
 /// A shape in the world.
 #[derive(Clone, Debug)]
@@ -27,35 +26,6 @@ pub enum Shape {
     Sphere(Sphere),
     /// An axis-aligned box, as its six faces.
     Box(Box<[Quad; 6]>),
-}
-
-/// Where a ray meets a shape.
-#[derive(Clone, Copy, Debug)]
-pub struct Hit {
-    /// Ray parameter.
-    pub t: f32,
-    /// The point.
-    pub point: Vec3A,
-    /// Unit normal of the shape, on no particular side of the ray.
-    pub normal: Vec3A,
-}
-
-/// A point drawn on a light.
-#[derive(Clone, Copy, Debug)]
-pub struct SurfacePoint {
-    /// Unit direction towards it.
-    pub direction: Vec3A,
-    /// Distance to it.
-    pub distance: f32,
-    /// Density over solid angle of having drawn this direction.
-    pub pdf_solid_angle: f32,
-}
-
-impl Hit {
-    /// How far from the point a ray must start so that it doesn't meet the same place again.
-    pub fn offset(&self) -> f32 {
-        RELATIVE_ERROR * (self.t + self.point.abs().max_element() + 1e-3)
-    }
 }
 
 impl Shape {
@@ -184,16 +154,6 @@ fn faces_away(faces: &[Quad; 6], face: &Quad, from: Vec3A, point: &SurfacePoint)
     let center = 0.5 * (faces[0].center + faces[1].center);
     let outside = faces.iter().any(|f| (from - f.center).dot(f.center - center) > 0.0);
     outside && point.direction.dot(face.center - center) > 0.0
-}
-
-/// Density over solid angle of a point drawn with `pdf_area`, seen along `to_point`.
-pub(super) fn pdf_from_area(pdf_area: f32, to_point: Vec3A, normal: Vec3A) -> f32 {
-    let squared = to_point.length_squared();
-    let cos_times_distance = to_point.dot(normal).abs();
-    if cos_times_distance <= 0.0 {
-        return 0.0;
-    }
-    pdf_area * squared * squared.sqrt() / cos_times_distance
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use std::f32::consts::PI;
 
 use glam::{Vec2, Vec3A};
 
-use super::{Hit, SurfacePoint, shape::pdf_from_area};
+use super::hit::{Hit, SurfacePoint, pdf_from_area};
 use crate::{
     math::{OrthonormalBasis, Ray},
     sampling::warp::{uniform_cone, uniform_cone_pdf, uniform_sphere},

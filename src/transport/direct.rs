@@ -9,7 +9,7 @@
 use glam::Vec3A;
 
 use super::{
-    emission::{EmissionEstimator, RayKind},
+    emission::{EmissionEstimator, ray::RayKind},
     march,
     scene::Scene,
     shadow,

@@ -12,9 +12,15 @@
 use glam::Vec3A;
 
 use super::{
+    counts::Allocation,
     probes::{Brightness, DistancePdf},
-    strategy::{Distance, ScatterProbability, Strategy, Tracker},
-    tracking::{self, Event, Flight},
+    strategy::{Strategy, Tracker},
+    tracking::{
+        decomposition,
+        event::{Event, Flight},
+        fill::fill,
+        scattering::scatter,
+    },
 };
 use crate::{
     math::{PathRng, Ray, Rgb, Slot},
@@ -25,12 +31,8 @@ use crate::{
 /// Probability of null-collision tracking where a flight is either that or guided. It bounds the
 /// weights by its inverse.
 const NULL_SHARE: f32 = 0.6;
-/// Most guided flights of a ray from the camera, on average.
-const MOST_FLIGHTS: f32 = 16.0;
 /// Guided flights that what a ray brings is spread over at least.
 const LEAST_SPREAD: f32 = 0.1;
-/// Relative variance of what an unguided flight finds from which on guided ones pay.
-const MUCH_MISSED: f32 = 1.0;
 
 /// p_select: the densities that guide along one ray, each with the same share.
 #[derive(Debug)]
@@ -80,48 +82,6 @@ pub(super) fn middle(ray: &Ray, t0: f32, t1: f32) -> Vec3A {
     ray.at(if t1.is_finite() { 0.5 * (t0 + t1) } else { t0 })
 }
 
-/// How the flights of a camera ray share what both kinds can bring, scattering.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Allocation {
-    /// Guided flights on average.
-    pub(super) flights: f32,
-    /// Whether they bring all of it; else both kinds do, by MIS.
-    pub(super) alone: bool,
-}
-
-impl Allocation {
-    /// How many guided flights pay, where the guides are those of `distance_pdf`. The noise of a pixel is
-    /// about in proportion to its light, so that the picture's falls fastest for the same effort
-    /// where each gets flights in that proportion; fewer where an unguided one finds all the light
-    /// as well, as in a cloud, or where the noise is that of surfaces. But each ray gets one at least,
-    /// or its share of one, as it does from probes alone: what is rarely guided has rare bright paths.
-    pub(super) fn new(
-        strategy: &Strategy,
-        distance_pdf: Option<&DistancePdf>,
-        film: &Brightness,
-    ) -> Self {
-        let alone = strategy.advanced.distance == Distance::Probes;
-        let Some(distance_pdf) = distance_pdf else { return Self { flights: 1.0, alone } };
-        let least = if alone { 1.0 } else { film.share };
-        let relative = film.share * (distance_pdf.light() / film.scattered);
-        let wanted = relative * (distance_pdf.missed() / MUCH_MISSED).min(1.0);
-        let flights = match strategy.advanced.scatter_probability {
-            ScatterProbability::Light if wanted.is_finite() => wanted.clamp(least, MOST_FLIGHTS),
-            _ => least,
-        };
-        Self { flights, alone }
-    }
-
-    /// The factor of a scattering event of either kind, whose weight is over `pdf_null`.
-    fn weight(&self, pdf_null: f32, pdf_guided: f32, is_null: bool) -> f32 {
-        match self.alone {
-            false => mis::mixture([1.0, self.flights], [pdf_null, pdf_guided]),
-            true if is_null || pdf_guided <= 0.0 => 0.0,
-            true => pdf_null / (pdf_guided * self.flights),
-        }
-    }
-}
-
 /// The flight along a ray through `medium` without a guide, by the tracker that is chosen.
 pub(super) fn unguided(
     medium: MediumRay,
@@ -132,13 +92,7 @@ pub(super) fn unguided(
     // Without a walk of its own, the emission is gathered by the collisions that are read.
     if strategy.advanced.tracker == Tracker::Decomposition && strategy.emission_ratio_tracking {
         let optical_distance = rng.exponential_at(Slot::Distance);
-        return tracking::scatter_by_decomposition(
-            medium,
-            strategy,
-            throughput,
-            optical_distance,
-            rng,
-        );
+        return decomposition::scatter(medium, strategy, throughput, optical_distance, rng);
     }
     null(medium, strategy, throughput, rng)
 }
@@ -146,7 +100,7 @@ pub(super) fn unguided(
 /// The flight along a ray through `medium` by null-collision tracking that knows its density.
 fn null(medium: MediumRay, strategy: &Strategy, throughput: Rgb, rng: &mut PathRng) -> Flight {
     let optical_distance = rng.exponential_at(Slot::Distance);
-    tracking::scatter(medium, strategy, throughput, optical_distance, rng)
+    scatter(medium, strategy, throughput, optical_distance, rng)
 }
 
 /// One flight, guided or not: its weight divides by the mixture of both densities.
@@ -161,10 +115,10 @@ pub(super) fn null_or_guided(
     let is_null = u < NULL_SHARE;
     let mut flight = if is_null {
         let optical_distance = -(1.0 - u / NULL_SHARE).max(f32::EPSILON).ln();
-        tracking::scatter(medium, strategy, throughput, optical_distance, rng)
+        scatter(medium, strategy, throughput, optical_distance, rng)
     } else {
         let t = guide.sample(((u - NULL_SHARE) / (1.0 - NULL_SHARE)).min(1.0 - f32::EPSILON));
-        tracking::fill(medium, strategy, throughput, t, rng)
+        fill(medium, strategy, throughput, t, rng)
     };
     flight.emission /= NULL_SHARE;
     flight.weight *= match flight.event {
@@ -214,7 +168,7 @@ impl<'g> GuidedDistances<'g> {
     }
 
     /// Where the guided flights end.
-    pub(super) fn distances(&self) -> impl Iterator<Item = f32> + use<'g> {
+    pub(super) fn iter(&self) -> impl Iterator<Item = f32> + use<'g> {
         let (guide, count, offset) = (self.guide, self.count, self.offset);
         (0..count).map(move |index| {
             let u = (index as f32 + offset) / count as f32;
@@ -231,7 +185,7 @@ impl<'g> GuidedDistances<'g> {
         throughput: Rgb,
         rng: &mut PathRng,
     ) -> Flight {
-        self.weighed(tracking::fill(medium, strategy, throughput, t, rng), false)
+        self.weighed(fill(medium, strategy, throughput, t, rng), false)
     }
 
     /// The unguided one.
@@ -255,10 +209,14 @@ impl<'g> GuidedDistances<'g> {
 
 #[cfg(test)]
 mod tests {
+    use crate::error::NO_PROGRESS;
+    use crate::transport::prepare;
     use glam::UVec2;
 
     use super::*;
-    use crate::transport::{Scene, probes::Probes, strategy::Advanced};
+    use crate::transport::Scene;
+    use crate::transport::probes::Probes;
+    use crate::transport::strategy::{Advanced, ScatterProbability};
 
     const SMOKE: &str = r#"
         [[volume]]
@@ -314,10 +272,10 @@ mod tests {
         let u = again.at(Slot::Distance);
         let plain = if u < NULL_SHARE {
             let depth = -(1.0 - u / NULL_SHARE).max(f32::EPSILON).ln();
-            tracking::scatter(medium.clone(), strategy, Rgb::ONE, depth, &mut again)
+            scatter(medium.clone(), strategy, Rgb::ONE, depth, &mut again)
         } else {
             let t = guide.sample((u - NULL_SHARE) / (1.0 - NULL_SHARE));
-            tracking::fill(medium.clone(), strategy, Rgb::ONE, t, &mut again)
+            fill(medium.clone(), strategy, Rgb::ONE, t, &mut again)
         };
         Drawn { flight, plain, counts: [NULL_SHARE, 1.0 - NULL_SHARE] }
     }
@@ -334,10 +292,10 @@ mod tests {
         let fan = GuidedDistances::new(strategy, guide, film, &mut rng);
         let mut again = rng.clone();
         let medium = || medium.clone();
-        let (flight, plain) = match fan.distances().next() {
+        let (flight, plain) = match fan.iter().next() {
             Some(t) => (
                 fan.guided(medium(), strategy, t, Rgb::ONE, &mut rng),
-                tracking::fill(medium(), strategy, Rgb::ONE, t, &mut again),
+                fill(medium(), strategy, Rgb::ONE, t, &mut again),
             ),
             None => (
                 fan.unguided(medium(), strategy, Rgb::ONE, &mut rng),
@@ -378,7 +336,7 @@ mod tests {
     #[test]
     fn weights_divide_by_the_mixture_of_what_draws() {
         let scene = Scene::of_text(SMOKE);
-        let probes = Probes::new(&scene).unwrap();
+        let probes = prepare::probes(&scene, NO_PROGRESS).unwrap().unwrap();
         let scatter_probability = ScatterProbability::Even;
         let advanced = Advanced { scatter_probability, ..Advanced::default() };
         let strategy = Strategy { advanced, ..scene.strategy };

@@ -15,8 +15,9 @@
 use std::ops::ControlFlow;
 
 use super::{
-    emission::{RayEmission, attenuated},
-    tracking::{Event, Flight, MOST_COLLISIONS, exp_neg, roulette_below},
+    emission::ray::{RayEmission, attenuated},
+    tracking::event::{Event, Flight},
+    tracking::{MOST_COLLISIONS, exp_neg, roulette_below},
     transmittance::GOLDEN,
 };
 use crate::{

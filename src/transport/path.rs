@@ -1,69 +1,44 @@
 //! The path: camera, flights through the medium, scattering and reflection, light on the way.
 //!
-//! | what the ray from a vertex gathers | settings without ratio tracking | with it, or marching |
-//! |---|---|---|
-//! | ε on the ray | the scattering walk's own, up to its event | the emission walk, whole ray |
-//! | the end of the ray | when the scattering walk gets there | with the emission walk's T |
+//! In the symbols of the talk, with d the distance to the surface that the ray meets,
+//! L(x, ω) = ∫₀^d T [μ_s L_s + ε] dt + T(d) L_end, and L_s(x, ω) = ∫ ρ(ω, ω') L(x, ω') dω'.
 //!
-//! With ratio tracking the scattering walk gathers neither, so that nothing counts twice.
-//! Every combination of toggles has the same mean. A marched ray stands for both walks, biased.
+//! | term | settings without ratio tracking | with it, or marching |
+//! |---|---|---|
+//! | ∫ T ε dt | the scattering walk's own, up to its event | an emission walk over the whole ray |
+//! | T(d) L_end | when the scattering walk gets there | with the emission walk's T |
+//! | ∫ T μ_s L_s dt | the next vertex: light samples, then a direction | the same |
+//!
+//! With ratio tracking the scattering walk gathers neither of the first two, so that nothing counts
+//! twice. Every combination of toggles has the same mean. A marched ray stands for both walks,
+//! biased.
+//!
+//! Where the talk's ideas sit: emission at every collision in [`super::tracking::scattering`],
+//! emission ratio tracking in [`super::emission::ratio`], the majorant boost in
+//! `tracking::majorant`, fires as lights in [`super::direct`], probe MIS in `distance` and
+//! [`super::probes`]; how often each is sampled in `counts`.
 
-use glam::Vec3A;
+mod state;
 
-use super::direct::PrevVertex;
-use super::distance::{DistanceGuide, GuidedDistances};
-use super::emission::{EmissionEstimator, RayEmission, RayKind};
+use self::state::{Branch, State};
+use super::context::PathContext;
+use super::counts::{Counts, Standing};
+use super::direct::{self, PrevVertex};
+use super::distance::{self, DistanceGuide, GuidedDistances};
+use super::emission::ray::{RayEmission, RayKind};
+use super::guiding;
+use super::march;
 use super::observer::{Observer, PathStep};
-use super::probes::{Brightness, Probes};
+use super::sample::{Contributions, PathSample};
 use super::scene::Scene;
-use super::strategy::Strategy;
-use super::tracking::{Event, Flight};
-use super::vertex::{DirectionSample, Vertex};
-use super::weight_window::{MOST_NESTED, Splitting};
-use super::{PathSample, direct, distance, guiding, march, tracking};
-use crate::{
-    light::{LightChoice, Receiver},
-    math::{PathRng, Ray, Rgb, mean},
-    sampling::equiangular::Equiangular,
-    surface::{self, Intersection},
-    volume::world::MediumRay,
-};
+use super::tracking::event::{Event, Flight};
+use super::vertex::Vertex;
+use crate::math::{PathRng, Ray, Rgb};
+use crate::surface::{self, Intersection};
+use crate::volume::world::MediumRay;
 
 /// Most scattering events and reflections of any path. A path that gets here is counted.
 pub const GUARD: u32 = 100_000;
-/// Scattering events and reflections before roulette may end a path.
-const ROULETTE_AFTER: u32 = 3;
-/// Throughput below which it does. Paths that may yet come to light are not worth less for being
-/// dim: at 1 the noise of dense smoke costs a third more time, that of lights inside of it several
-/// times as much.
-const ROULETTE_BELOW: f32 = 0.1;
-/// Rays of a path that are guided at most: later ones bring so little that guides cost more than
-/// they gain, and each adds to the spread of the path's weight.
-const GUIDED_RAYS: u32 = 4;
-/// Turns up to which the weight window is asked: the spread that guides bring is behind by then, and
-/// to look up a probe at each of a thousand turns costs more than the walk.
-const WEIGHED_TURNS: u32 = 8;
-
-/// What was prepared for the scene.
-#[derive(Clone, Copy, Debug)]
-pub struct PathContext<'s> {
-    /// The emission's own walk.
-    pub emission_estimator: &'s EmissionEstimator,
-    /// What says where scattering pays and which light to look at, as far as that is asked for.
-    pub probes: Option<&'s Probes>,
-    /// What the probes think of the film.
-    pub brightness: Brightness,
-    /// Guided flights of the camera rays, relative to what the probes propose; 0 asks the probes
-    /// nowhere where scattering pays.
-    pub flights: f32,
-}
-
-impl<'s> PathContext<'s> {
-    /// The probes, where they say where scattering pays.
-    fn guides(&self, strategy: &Strategy) -> Option<&'s Probes> {
-        self.probes.filter(|_| self.flights > 0.0 && strategy.guides())
-    }
-}
 
 /// Follows one path from the camera along `ray`.
 pub fn trace(
@@ -73,73 +48,42 @@ pub fn trace(
     rng: &mut PathRng,
     observer: &mut impl Observer,
 ) -> PathSample {
-    let mut path = Path {
-        scene,
-        context,
-        ray,
-        throughput: Rgb::ONE,
-        guiding_ratio: 1.0,
-        scatters: 0,
-        prev_vertex: None,
-        light: None,
-        expected: 0.0,
-        nested: 0,
-        table: march::MarchTable::default(),
-        branch: Branch::Main,
-        sample: PathSample::default(),
-    };
+    let state = State::new(ray);
+    let (table, contributions) = (march::MarchTable::default(), Contributions::default());
+    let mut path = Path { scene, context, state, expected: 0.0, nested: 0, table, contributions };
     while path.advance(rng, observer) {}
-    path.sample
+    path.contributions.finish()
 }
 
 struct Path<'s> {
     scene: &'s Scene,
     context: PathContext<'s>,
-    ray: Ray,
-    throughput: Rgb,
-    /// How many times as often as by chance alone the last turn to everywhere was drawn so: a path
-    /// that was sent to light is not dim for being one of many.
-    guiding_ratio: f32,
-    /// Scattering events and reflections so far.
-    scatters: u32,
-    /// None for the camera ray.
-    prev_vertex: Option<PrevVertex>,
-    /// A point of a light that guides the ray.
-    light: Option<Vec3A>,
-    /// What a flight of the camera ray is expected to bring; 0 where that is not known.
+    state: State,
+    /// Contribution that a flight of the camera ray is expected to make; 0 where that is not known.
     expected: f32,
-    /// Splits whose copies are being followed.
+    /// Splits whose branches are being followed.
     nested: u32,
-    /// Of the ray, where it is marched.
+    /// The steps of the present ray, where it is marched.
     table: march::MarchTable,
-    branch: Branch,
-    sample: PathSample,
-}
-
-/// The camera ray may have several flights: one that is unguided, and guided ones.
-#[derive(Clone, Copy, PartialEq)]
-enum Branch {
-    /// The unguided one is followed.
-    Main,
-    /// A guided one is followed, the first of them or not.
-    Guided { first: bool },
+    contributions: Contributions,
 }
 
 impl Path<'_> {
-    /// One ray and the vertex at its end; false when the path is over.
+    /// Advance: one ray, its emission and its end, and the flight to the vertex on it. Scatter: on
+    /// from that vertex. False when the path is over.
     fn advance(&mut self, rng: &mut PathRng, observer: &mut impl Observer) -> bool {
-        let scene = self.scene;
-        let end = surface::intersect(&scene.surfaces, &self.ray);
-        let t_max = end.map_or(f32::INFINITY, |end| end.hit.t);
-        observer.step(PathStep::Ray { ray: &self.ray, t_max, throughput: self.throughput });
+        let (scene, ray, throughput) = (self.scene, self.state.ray, self.state.throughput);
+        let end = surface::intersect(&scene.surfaces, &ray);
+        let d = end.map_or(f32::INFINITY, |end| end.hit.t);
+        observer.step(PathStep::Ray { ray: &ray, t_max: d, throughput });
 
-        let medium = scene.world.along(self.ray, t_max);
+        let medium = scene.world.along(ray, d);
         let marched = scene.strategy.is_biased().then(|| self.march(medium.clone(), rng));
-        let coverage = scene
+        let transmittance = scene
             .strategy
             .gathers_whole_rays()
             .then(|| self.gather_whole_ray(medium.clone(), marched, end.as_ref(), rng, observer));
-        if coverage.is_some() && self.is_last_ray() {
+        if transmittance.is_some() && self.is_last_ray() {
             return false;
         }
         let flight = match marched {
@@ -147,90 +91,23 @@ impl Path<'_> {
             None => self.fly(medium, end.as_ref(), rng, observer),
         };
         if flight.emission != Rgb::ZERO {
-            let weight = direct::weight_of_emission(scene, &self.ray, self.prev_vertex.as_ref());
-            self.gather_emission(weight * flight.emission, observer);
+            let w = direct::weight_of_emission(scene, &ray, self.state.prev_vertex.as_ref());
+            let State { scatters, throughput, .. } = self.state;
+            self.contributions.add_emission(scatters, throughput * (w * flight.emission), observer);
         }
-        self.throughput *= flight.weight;
-        if !self.throughput.is_finite() {
+        self.state.throughput *= flight.weight;
+        if !self.state.throughput.is_finite() {
             // Leads nowhere, and is counted with the sample it spoils.
-            self.sample.indirect += self.throughput;
+            self.contributions.spoil(self.state.throughput);
             return false;
         }
-        if self.scatters == 0 {
-            self.note_first_event(&flight, end.as_ref(), coverage);
+        if self.state.scatters == 0 {
+            self.contributions.note_first_event(&flight, d, transmittance);
         }
         match self.arrive(flight.event, end.as_ref(), observer) {
-            Some(vertex) => self.split(&vertex, rng, observer),
+            Some(vertex) => self.go_on(&vertex, rng, observer),
             None => false,
         }
-    }
-
-    /// Goes on from a vertex as often as pays; false when the path is over. All copies but the last
-    /// are followed to their end.
-    fn split(&mut self, vertex: &Vertex, rng: &mut PathRng, observer: &mut impl Observer) -> bool {
-        let copies = self.copies(vertex, rng);
-        self.throughput *= copies.factor;
-        for _ in 1..copies.count {
-            let (ray, throughput, light) = (self.ray, self.throughput, self.light);
-            let (scatters, prev_vertex, branch) = (self.scatters, self.prev_vertex, self.branch);
-            self.branch = Branch::Guided { first: false };
-            self.nested += 1;
-            let mut goes_on = self.turn(vertex, rng, observer);
-            while goes_on {
-                goes_on = self.advance(rng, observer);
-            }
-            self.nested -= 1;
-            (self.ray, self.throughput, self.light) = (ray, throughput, light);
-            (self.scatters, self.prev_vertex, self.branch) = (scatters, prev_vertex, branch);
-        }
-        copies.count > 0 && self.turn(vertex, rng, observer)
-    }
-
-    /// How often to go on from a vertex: once, where probes don't tell what comes of it.
-    fn copies(&self, vertex: &Vertex, rng: &mut PathRng) -> Splitting {
-        match self.context.guides(&self.scene.strategy) {
-            Some(probes) if self.is_weighed(vertex) => {
-                let position = vertex.receiver().position;
-                let radiance = probes.radiance_at(position, self.ray.direction);
-                let value = mean(self.throughput) * radiance / self.expected;
-                let brightness = self.throughput.max_element() / ROULETTE_BELOW;
-                Splitting::draw(value, brightness, self.nested < MOST_NESTED, rng)
-            }
-            _ => Splitting { count: 1, factor: 1.0 },
-        }
-    }
-
-    /// Whether the weight window says how a path goes on from a vertex; else it is roulette.
-    fn is_weighed(&self, vertex: &Vertex) -> bool {
-        self.expected > 0.0 && self.scatters < WEIGHED_TURNS && !vertex.is_surface()
-    }
-
-    /// Follows a guided flight of the camera ray to its end, then goes back to where it set out.
-    fn follow(
-        &mut self,
-        guided: Flight,
-        first: bool,
-        rng: &mut PathRng,
-        observer: &mut impl Observer,
-    ) {
-        self.count(guided.collisions);
-        let (ray, throughput, light) = (self.ray, self.throughput, self.light);
-        self.throughput *= guided.weight;
-        if let Event::Scattered { t, phase } = guided.event
-            && self.throughput.is_finite()
-            && self.throughput != Rgb::ZERO
-        {
-            self.branch = Branch::Guided { first };
-            let vertex = Vertex::volume(ray.at(t), ray.direction, phase);
-            let mut goes_on = self.split(&vertex, rng, observer);
-            while goes_on {
-                goes_on = self.advance(rng, observer);
-            }
-        }
-        (self.ray, self.throughput, self.light) = (ray, throughput, light);
-        (self.branch, self.scatters, self.prev_vertex) = (Branch::Main, 0, None);
-        self.guiding_ratio = 1.0;
-        rng.enter_vertex(0);
     }
 
     /// The vertex a flight leads to, if there is one.
@@ -240,23 +117,121 @@ impl Path<'_> {
         end: Option<&Intersection>,
         observer: &mut impl Observer,
     ) -> Option<Vertex> {
+        let ray = self.state.ray;
         match event {
             Event::Absorbed { t, .. } => {
-                observer.step(PathStep::Absorbed { point: self.ray.at(t) });
+                observer.step(PathStep::Absorbed { point: ray.at(t) });
                 None
             }
-            Event::Scattered { t, phase } => {
-                Some(Vertex::volume(self.ray.at(t), self.ray.direction, phase))
-            }
+            Event::Scattered { t, phase } => Some(Vertex::volume(ray.at(t), ray.direction, phase)),
             Event::Reached => {
                 if !self.scene.strategy.gathers_whole_rays() {
-                    let prev_vertex = self.prev_vertex.as_ref();
-                    let radiance = direct::at_the_end(self.scene, &self.ray, end, prev_vertex);
-                    self.gather_end(radiance, observer);
+                    let prev_vertex = self.state.prev_vertex.as_ref();
+                    let radiance = direct::at_the_end(self.scene, &ray, end, prev_vertex);
+                    let State { scatters, throughput, .. } = self.state;
+                    self.contributions.add_end(scatters, throughput * radiance, observer);
                 }
-                end.and_then(|end| Vertex::reflecting(end, &self.ray))
+                end.and_then(|end| Vertex::reflecting(end, &ray))
             }
         }
+    }
+
+    /// Goes on from a vertex as often as pays; false when the path is over. All branches but the
+    /// last are followed to their end.
+    fn go_on(&mut self, vertex: &Vertex, rng: &mut PathRng, observer: &mut impl Observer) -> bool {
+        let State { ray, throughput, scatters, .. } = self.state;
+        let standing =
+            Standing { throughput, scatters, expected: self.expected, nested: self.nested };
+        let strategy = &self.scene.strategy;
+        let counts = Counts::at(&self.context, strategy, vertex, ray.direction, standing);
+        let splitting = counts.splitting(rng);
+        self.state.throughput *= splitting.factor;
+        for _ in 1..splitting.count {
+            self.nested += 1;
+            self.follow(Branch::Other, rng, observer, |path, rng, observer| {
+                path.scatter(vertex, &counts, rng, observer)
+            });
+            self.nested -= 1;
+        }
+        splitting.count > 0 && self.scatter(vertex, &counts, rng, observer)
+    }
+
+    /// Scatter: light samples at a vertex, then a new direction; false when the path ends there.
+    fn scatter(
+        &mut self,
+        vertex: &Vertex,
+        counts: &Counts,
+        rng: &mut PathRng,
+        observer: &mut impl Observer,
+    ) -> bool {
+        if self.is_last_ray() {
+            return false;
+        }
+        if self.state.scatters == GUARD {
+            self.contributions.cut();
+            return false;
+        }
+        self.state.scatters += 1;
+        match self.state.branch {
+            Branch::Main => rng.enter_vertex(self.state.scatters),
+            Branch::FirstGuided => rng.enter_vertex_of_branch(self.state.scatters),
+            Branch::Other => rng.enter_vertex(u32::MAX),
+        }
+        observer.step(PathStep::Vertex { vertex, throughput: self.state.throughput });
+        let choice = guiding::light_choice(self.scene, &self.context, vertex);
+        for _ in 0..counts.light_samples {
+            let estimator = self.context.emission_estimator;
+            let sample = direct::sample_lights(self.scene, estimator, vertex, &choice, rng);
+            self.contributions.count(sample.collisions);
+            let State { scatters, throughput, .. } = self.state;
+            self.contributions.add_light(scatters, throughput * sample.light, observer);
+            self.state.light = sample.point;
+        }
+        if self.contributions.is_cut() {
+            return false;
+        }
+        let State { scatters, light, .. } = self.state;
+        let drawn = guiding::direction(self.scene, &self.context, scatters, vertex, light, rng);
+        let Some(drawn) = drawn else { return false };
+        self.state.throughput *= drawn.weight;
+        if vertex.is_broad() {
+            self.state.guiding_ratio = drawn.guiding_ratio;
+        }
+        self.state.ray = vertex.ray(drawn.direction);
+        let (from, pdf_solid_angle) = (vertex.receiver(), drawn.pdf_solid_angle);
+        self.state.prev_vertex = Some(PrevVertex { from, choice, pdf_solid_angle });
+        self.survives(counts, rng)
+    }
+
+    /// Russian roulette, compensated.
+    fn survives(&mut self, counts: &Counts, rng: &mut PathRng) -> bool {
+        let survival = counts.survival(self.state.throughput, self.state.guiding_ratio);
+        if survival >= 1.0 || survival <= 0.0 {
+            return survival > 0.0;
+        }
+        let survives = rng.uniform() < survival;
+        if survives {
+            self.state.throughput /= survival;
+        }
+        survives
+    }
+
+    /// Follows a branch to its end: what `begin` starts, and all rays after it. The path is then as
+    /// it was.
+    fn follow<O: Observer>(
+        &mut self,
+        branch: Branch,
+        rng: &mut PathRng,
+        observer: &mut O,
+        begin: impl FnOnce(&mut Self, &mut PathRng, &mut O) -> bool,
+    ) {
+        let saved = self.state;
+        self.state.branch = branch;
+        let mut goes_on = begin(self, rng, observer);
+        while goes_on {
+            goes_on = self.advance(rng, observer);
+        }
+        self.state = saved;
     }
 
     /// The flight to the next scattering event, or to the end of the ray. The camera ray may have
@@ -269,21 +244,27 @@ impl Path<'_> {
         rng: &mut PathRng,
         observer: &mut impl Observer,
     ) -> Flight {
-        let strategy = &self.scene.strategy;
-        let needs_end = !strategy.emission_ratio_tracking || goes_on(end);
-        let is_first = self.scatters == 0;
-        let guide = if is_first || !needs_end { self.guide(&medium, rng) } else { None };
-        let flight = match guide {
-            None => distance::unguided(medium, strategy, self.throughput, rng),
-            Some(guide) if is_first => self.fan_out(medium, &guide, rng, observer),
-            Some(guide) => distance::null_or_guided(medium, strategy, &guide, self.throughput, rng),
+        let (scene, State { ray, throughput, scatters, .. }) = (self.scene, self.state);
+        let needs_end = !scene.strategy.emission_ratio_tracking || goes_on(end);
+        let is_first = scatters == 0;
+        let guide = if is_first || !needs_end {
+            let light = &mut self.state.light;
+            guiding::distances(scene, &self.context, (scatters, &ray), &medium, light, rng)
+        } else {
+            None
         };
-        self.count(flight.collisions);
+        let strategy = &scene.strategy;
+        let flight = match guide {
+            None => distance::unguided(medium, strategy, throughput, rng),
+            Some(guide) if is_first => self.fan_out(medium, &guide, rng, observer),
+            Some(guide) => distance::null_or_guided(medium, strategy, &guide, throughput, rng),
+        };
+        self.contributions.count(flight.collisions);
         flight
     }
 
     /// The camera ray's flights: as many guided ones as pay, each of which is followed, and the
-    /// unguided one.
+    /// unguided one, which is returned.
     fn fan_out(
         &mut self,
         medium: MediumRay,
@@ -291,50 +272,37 @@ impl Path<'_> {
         rng: &mut PathRng,
         observer: &mut impl Observer,
     ) -> Flight {
-        let strategy = &self.scene.strategy;
+        let (strategy, throughput) = (&self.scene.strategy, self.state.throughput);
         let film = self.context.brightness.scaled(self.context.flights);
-        let fan = GuidedDistances::new(strategy, guide, film, rng);
-        self.expected = fan.expected();
-        for (index, t) in fan.distances().enumerate() {
-            let flight = fan.guided(medium.clone(), strategy, t, self.throughput, rng);
-            self.follow(flight, index == 0, rng, observer);
+        let distances = GuidedDistances::new(strategy, guide, film, rng);
+        self.expected = distances.expected();
+        for (index, t) in distances.iter().enumerate() {
+            let guided = distances.guided(medium.clone(), strategy, t, throughput, rng);
+            self.contributions.count(guided.collisions);
+            let branch = if index == 0 { Branch::FirstGuided } else { Branch::Other };
+            self.follow(branch, rng, observer, |path, rng, observer| {
+                path.state.throughput *= guided.weight;
+                let Event::Scattered { t, phase } = guided.event else { return false };
+                let State { ray, throughput, .. } = path.state;
+                let vertex = Vertex::volume(ray.at(t), ray.direction, phase);
+                let is_lit = throughput.is_finite() && throughput != Rgb::ZERO;
+                is_lit && path.go_on(&vertex, rng, observer)
+            });
+            rng.enter_vertex(0);
         }
-        fan.unguided(medium, strategy, self.throughput, rng)
-    }
-
-    /// What guides the flight along the present ray.
-    fn guide(&mut self, medium: &MediumRay, rng: &mut PathRng) -> Option<DistanceGuide> {
-        let guides = self.context.guides(&self.scene.strategy);
-        let probes = guides.filter(|_| self.scatters < GUIDED_RAYS)?;
-        let advanced = &self.scene.strategy.advanced;
-        let (t0, t1) = medium.extent()?;
-        let asks = self.scatters == 0 || advanced.guide_all_vertices;
-        let distance_pdf = if asks { Some(probes.along(medium.clone(), &self.ray)?) } else { None };
-        if !advanced.equiangular {
-            return DistanceGuide::new(distance_pdf, None);
-        }
-        if self.scatters == 0 {
-            let middle = distance::middle(&self.ray, t0, t1);
-            let from = Receiver { position: middle, normal: None };
-            let choice = direct::choice(&self.scene.strategy);
-            self.light = direct::point_of_light(self.scene, &from, &choice, rng);
-        }
-        let light = self
-            .light
-            .and_then(|point| Equiangular::new(&self.ray, point, probes.mean_cosine(), t0, t1));
-        DistanceGuide::new(distance_pdf, light)
+        distances.unguided(medium, strategy, throughput, rng)
     }
 
     /// Marches along the present ray and keeps its table.
     fn march(&mut self, medium: MediumRay, rng: &mut PathRng) -> RayEmission {
         let voxels = self.scene.strategy.advanced.march_step;
-        let gathered = self.table.fill(medium, voxels, self.throughput, rng);
-        self.count(gathered.collisions);
-        gathered
+        let marched = self.table.fill(medium, voxels, self.state.throughput, rng);
+        self.contributions.count(marched.collisions);
+        marched
     }
 
-    /// The emission of the whole ray, by the emission walk if it was not `marched`, and what lies at
-    /// its end through the same T, which is returned.
+    /// The emission of the whole ray, by the emission walk if it was not `marched`, and the radiance
+    /// at its end through the same T, which is returned.
     fn gather_whole_ray(
         &mut self,
         medium: MediumRay,
@@ -343,8 +311,9 @@ impl Path<'_> {
         rng: &mut PathRng,
         observer: &mut impl Observer,
     ) -> Rgb {
-        let prev_vertex = self.prev_vertex.as_ref();
-        let radiance = direct::at_the_end(self.scene, &self.ray, end, prev_vertex);
+        let State { ray, prev_vertex, scatters, throughput, .. } = self.state;
+        let prev_vertex = prev_vertex.as_ref();
+        let radiance = direct::at_the_end(self.scene, &ray, end, prev_vertex);
         let dark = radiance == Rgb::ZERO && !self.scene.world.emits();
         if dark && prev_vertex.is_some() {
             return Rgb::ZERO;
@@ -353,162 +322,26 @@ impl Path<'_> {
         let gathered = marched.unwrap_or_else(|| {
             let ray_kind = if is_seen { RayKind::Camera } else { RayKind::Scattered };
             let gathered = self.context.emission_estimator.gather(medium, ray_kind, rng);
-            self.count(gathered.collisions);
+            self.contributions.count(gathered.collisions);
             gathered
         });
-        let prev_vertex = self.prev_vertex.as_ref();
         if gathered.emission != Rgb::ZERO {
-            let weight = direct::weight_of_emission(self.scene, &self.ray, prev_vertex);
-            self.gather_emission(weight * gathered.emission, observer);
+            let w = direct::weight_of_emission(self.scene, &ray, prev_vertex);
+            self.contributions.add_emission(
+                scatters,
+                throughput * (w * gathered.emission),
+                observer,
+            );
         }
-        self.gather_end(gathered.transmittance * radiance, observer);
+        let radiance = gathered.transmittance * radiance;
+        self.contributions.add_end(scatters, throughput * radiance, observer);
         gathered.transmittance
     }
 
-    /// Whether the path may not turn any more: its last ray still gathers, both halves of the MIS
+    /// Whether the path may not scatter any more: its last ray still gathers, both halves of the MIS
     /// of the last vertex being due.
     fn is_last_ray(&self) -> bool {
-        self.scene.max_scatters > 0 && self.scatters == self.scene.max_scatters
-    }
-
-    /// Next-event estimation at a vertex, then a new direction; false when the path ends there.
-    fn turn(&mut self, vertex: &Vertex, rng: &mut PathRng, observer: &mut impl Observer) -> bool {
-        if self.is_last_ray() {
-            return false;
-        }
-        if self.scatters == GUARD {
-            self.sample.guard_hit = true;
-            return false;
-        }
-        self.scatters += 1;
-        match self.branch {
-            Branch::Main => rng.enter_vertex(self.scatters),
-            Branch::Guided { first: true } => rng.enter_vertex_of_branch(self.scatters),
-            Branch::Guided { first: false } => rng.enter_vertex(u32::MAX),
-        }
-        observer.step(PathStep::Vertex { vertex, throughput: self.throughput });
-        let choice = self.choice(vertex);
-        let look = direct::sample_lights(
-            self.scene,
-            self.context.emission_estimator,
-            vertex,
-            &choice,
-            rng,
-        );
-        self.count(look.collisions);
-        let light = self.throughput * look.light;
-        observer.step(PathStep::Light { contribution: light });
-        self.add_scattered(light);
-
-        if self.sample.guard_hit {
-            return false;
-        }
-        self.light = look.point;
-        let Some(turn) = self.choose_direction(vertex, rng) else { return false };
-        self.throughput *= turn.weight;
-        if vertex.is_broad() {
-            self.guiding_ratio = turn.guiding_ratio;
-        }
-        self.ray = vertex.ray(turn.direction);
-        let (from, pdf_solid_angle) = (vertex.receiver(), turn.pdf_solid_angle);
-        self.prev_vertex = Some(PrevVertex { from, choice, pdf_solid_angle });
-        self.survives(vertex, rng)
-    }
-
-    /// How a vertex chooses the light it looks at: by the probe around it, if there is one.
-    fn choice(&self, vertex: &Vertex) -> LightChoice {
-        let choice = direct::choice(&self.scene.strategy);
-        let from = vertex.receiver();
-        match self.context.probes.and_then(|probes| probes.scores(from.position)) {
-            Some(scores) => {
-                self.scene.lights.choice_by(scores, &from, choice.volumes, |direction| {
-                    vertex.rough_value(direction)
-                })
-            }
-            None => choice,
-        }
-    }
-
-    /// Where the path goes on from a vertex: sometimes where the probes know of light.
-    fn choose_direction(&self, vertex: &Vertex, rng: &mut PathRng) -> Option<DirectionSample> {
-        let strategy = &self.scene.strategy;
-        match self.context.probes.filter(|_| self.scatters < GUIDED_RAYS && strategy.guides()) {
-            Some(probes) => {
-                // Without guided flights there are no splits that would even out what the glow brings.
-                let light = self.light.filter(|_| self.context.flights > 0.0);
-                let guiding = guiding::guiding(&strategy.advanced, probes, vertex, light);
-                vertex.sample_guided(&guiding, rng)
-            }
-            None => vertex.sample(rng),
-        }
-    }
-
-    /// Counts the collisions of a walk, and notes a walk that was cut.
-    fn count(&mut self, collisions: u32) {
-        self.sample.tracking_steps = self.sample.tracking_steps.saturating_add(collisions);
-        self.sample.guard_hit |= collisions >= tracking::MOST_COLLISIONS;
-    }
-
-    /// Russian roulette on the throughput, compensated, where the weight window has not spoken.
-    fn survives(&mut self, vertex: &Vertex, rng: &mut PathRng) -> bool {
-        if self.is_weighed(vertex) {
-            return self.throughput != Rgb::ZERO;
-        }
-        let survival =
-            (self.throughput.max_element() * self.guiding_ratio / ROULETTE_BELOW).min(1.0);
-        if self.scatters < ROULETTE_AFTER || survival >= 1.0 {
-            return survival > 0.0;
-        }
-        let survives = rng.uniform() < survival;
-        if survives {
-            self.throughput /= survival;
-        }
-        survives
-    }
-
-    fn gather_emission(&mut self, emission: Rgb, observer: &mut impl Observer) {
-        let contribution = self.throughput * emission;
-        if self.scatters == 0 {
-            self.sample.emission += contribution;
-        } else {
-            self.add_scattered(contribution);
-        }
-        observer.step(PathStep::Emission { contribution });
-    }
-
-    fn gather_end(&mut self, radiance: Rgb, observer: &mut impl Observer) {
-        let contribution = self.throughput * radiance;
-        if self.scatters == 0 {
-            self.sample.background += contribution;
-        } else {
-            self.add_scattered(contribution);
-        }
-        observer.step(PathStep::End { contribution });
-    }
-
-    fn add_scattered(&mut self, contribution: Rgb) {
-        if self.scatters == 1 {
-            self.sample.direct += contribution;
-        } else {
-            self.sample.indirect += contribution;
-        }
-    }
-
-    /// Coverage and depth of the camera ray; `transmittance` is the emission walk's, if it had one.
-    fn note_first_event(
-        &mut self,
-        flight: &Flight,
-        end: Option<&Intersection>,
-        transmittance: Option<Rgb>,
-    ) {
-        let (opacity, depth) = match (&flight.event, end) {
-            (Event::Absorbed { real: false, .. }, _) => (1.0, None),
-            (Event::Absorbed { t, .. } | Event::Scattered { t, .. }, _) => (1.0, Some(*t)),
-            (Event::Reached, Some(end)) => (1.0, Some(end.hit.t)),
-            (Event::Reached, None) => (1.0 - mean(flight.weight), None),
-        };
-        let smooth = transmittance.filter(|_| end.is_none()).map(|t| 1.0 - mean(t));
-        (self.sample.alpha, self.sample.depth) = (smooth.unwrap_or(opacity), depth);
+        self.scene.max_scatters > 0 && self.state.scatters == self.scene.max_scatters
     }
 }
 

@@ -4,11 +4,12 @@
 use glam::UVec2;
 
 use super::{
-    Frame, direct,
-    distance::{self, Allocation},
+    counts::Allocation,
+    direct, distance,
+    frame::PreparedFrame,
     probes::{DistancePdf, Probes},
     scene::Scene,
-    tracking::{EmissionGathering, exp_neg},
+    tracking::{event::EmissionGathering, exp_neg},
 };
 use crate::{
     light::Receiver,
@@ -70,7 +71,8 @@ impl Profile {
     /// T is integrated by the midpoint rule. The weights are those of the expected densities, as
     /// they would be were the transmittance known; a path has those of its own null collisions,
     /// which scatter around them.
-    pub fn along(frame: &Frame, ray: &Ray, count: u32) -> Option<Self> {
+    pub fn along(prepared: &PreparedFrame, ray: &Ray, count: u32) -> Option<Self> {
+        let frame = prepared.frame();
         let scene: &Scene = &frame.scene;
         let end = surface::intersect(&scene.surfaces, ray);
         let medium = scene.world.along(*ray, end.map_or(f32::INFINITY, |end| end.hit.t));
@@ -87,7 +89,7 @@ impl Profile {
         let gather = EmissionGathering::of(&scene.strategy);
         let optical_depth = read_medium(medium.clone(), gather, &mut rows, step);
         let guides = frame.probes.as_deref().filter(|_| scene.strategy.guides());
-        let flights = frame.guided_flights();
+        let flights = prepared.guided_flights();
         let guided = guides.is_some_and(|probes| {
             let distance_pdf = probes.along(medium, ray);
             let film = frame.brightness.scaled(flights);

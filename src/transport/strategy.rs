@@ -12,107 +12,111 @@ use serde::{Deserialize, Serialize};
 #[serde(default)]
 #[schemars(transform = add_preset_key)]
 pub struct Strategy {
-    /// Collect the fire's glow at every step through the volume instead of only where a path is
-    /// absorbed. Less noise wherever fire is thin. Ratio tracking replaces it when both are on.
+    /// Collect the fire's emission at every tracking step instead of only where a path is absorbed.
+    /// Less noise wherever fire is thin. Ratio tracking replaces it when both are on.
     pub emission_decoupling: bool,
-    /// Give the fire's glow a walk of its own that never stops at smoke, so that fire is seen all
-    /// along the ray. Much less noise for fire in or behind smoke, for one extra walk per bounce.
+    /// Collect the fire's emission by a ratio-tracking walk of its own that smoke never stops, so
+    /// that fire is seen all along the ray. Much less noise for fire in or behind smoke, at the
+    /// cost of one extra walk per bounce.
     pub emission_ratio_tracking: bool,
-    /// Take more steps where the fire is bright, even if there is hardly any smoke there. Much
-    /// less noise in bright thin flames; costs steps inside the fire only.
+    /// Take more tracking steps where the fire is bright, even if there is hardly any smoke. Much
+    /// less noise in bright thin flames; the extra steps are inside the fire only.
     pub majorant_boost: bool,
-    /// Treat burning volumes as lights: at every bounce, look straight at the fire as well as in a
-    /// random direction. Much less noise wherever fire lights smoke, floors or walls.
+    /// Treat burning volumes as lights: at every bounce, sample the fire directly as well
+    /// (next-event estimation, combined by MIS). Much less noise wherever fire lights smoke, floors
+    /// or walls.
     pub nee: bool,
-    /// Scatter where light is: probes spread over the smoke know how bright it is lit and send
-    /// paths there, split those that will bring much and end some that won't. Much less noise for
-    /// torches in mist and other lights inside of thin smoke.
+    /// Guide paths to scatter where the light is: probes placed through the smoke estimate how
+    /// brightly it is lit. Paths that promise much light are split, others end by Russian roulette.
+    /// Much less noise for torches in mist and other lights inside thin smoke.
     pub probe_mis: bool,
-    /// How light is followed through volumes. `path` is right on average, whatever else is set;
+    /// How light transport is computed. `path` is path tracing, unbiased whatever else is set;
     /// `march` is ray marching, the old system, kept for comparison: its pictures are biased, and
-    /// stay so however long they render. It collects the fire's glow at every step and scatters by
-    /// a table of its own, so that decoupling, ratio tracking, the boost, the probes and their finer
-    /// choices change nothing with it. All other keys mean what they always do.
+    /// stay so however long they render. It collects emission at every step and scatters by a table
+    /// of its own, so that decoupling, ratio tracking, the boost, the probes and their advanced
+    /// settings have no effect with it. All other keys keep their meaning.
     pub integrator: Integrator,
-    /// The finer choices behind the toggles.
+    /// The advanced settings behind the toggles.
     pub advanced: Advanced,
 }
 
-/// The finer choices behind the toggles of [`Strategy`].
+/// The advanced settings behind the toggles of [`Strategy`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Advanced {
     /// How the majorant boost places its steps. `stratified` spreads them evenly along the ray and
-    /// measures the smoke in front of them apart; `optimal` takes them where they lower the noise
-    /// most; `clamped` takes more where the fire is bright, never much shorter than a voxel;
-    /// `literal` is the same without that limit, as the talk states it. The first two are walks of
-    /// their own; decoupling without ratio tracking takes `clamped` in their place.
+    /// estimates the transmittance to them separately; `optimal` places them where they reduce
+    /// noise most; `clamped` takes more where the fire is bright, never much shorter than a voxel;
+    /// `literal` is the same without that limit, as in the talk. The first two are walks of their
+    /// own; decoupling without ratio tracking uses `clamped` in their place.
     pub boost_mode: BoostMode,
-    /// Extra steps that the majorant boost takes along the brightest line through the volume.
-    /// More steps, less noise; 0 boosts nothing. With `boost_mode = "optimal"` the number that pays
-    /// best is found before the render starts: there 32 takes as many as were found, 64 twice
-    /// that.
+    /// Extra steps that the majorant boost takes along the brightest line through the volume. More
+    /// steps give less noise; 0 is no boost. With `boost_mode = "optimal"` the most efficient
+    /// number is found before the render starts: 32 then takes that number, 64 twice as many.
     #[schemars(range(min = 0.0, max = 1000.0))]
     pub boost_amount: f32,
-    /// With `boost_mode = "clamped"` or where that stands in: the shortest boosted step, counted in
-    /// voxels.
+    /// With `boost_mode = "clamped"`, or where that is used in place of another mode: the shortest
+    /// boosted step, in voxels.
     #[schemars(range(min = 0.01, max = 1000.0), extend("unit" = "voxels"))]
     pub boost_clamp_voxels: f32,
-    /// What a look at the fire brings back. `line` gathers its glow all along the line of sight;
-    /// `point` takes one point of it, which is cheaper and noisier; where fog without borders glows,
-    /// it is the line all the same.
+    /// How next-event estimation samples the fire. `line` collects emission all along the shadow
+    /// ray; `point` evaluates one point, which is cheaper and noisier. Unbounded glowing fog always
+    /// uses `line`.
     pub nee_evaluation: NeeEvaluation,
-    /// How a bounce chooses the light it looks at. `hierarchy` prefers what is bright and near;
-    /// `uniform` gives every light the same chance; `probes` prefers what is seen to be bright from
-    /// probes all over the smoke, whose placing takes longer for that, also with the toggle off.
-    /// Where nothing scatters there are none, and the hierarchy chooses.
+    /// How next-event estimation selects a light. `hierarchy` (a light tree) prefers bright and near
+    /// lights; `uniform` selects every light with the same probability; `probes` prefers lights
+    /// that probes in the smoke see as bright, which takes longer to prepare, also with the toggle
+    /// off. Where nothing scatters there are no probes, and `hierarchy` is used.
     pub light_selection: LightSelection,
-    /// How far a ray from the camera goes before it scatters, with the probes on. `mis` takes the
-    /// distances of the probes and of chance in turn and weighs both, so that it is good wherever
-    /// one of them is; `probes` takes those of the probes alone, `null` those of chance alone.
+    /// With the probes on: how the distance to the first scattering event of a camera ray is
+    /// sampled. `mis` combines probe guiding and null-collision sampling by MIS, so that it is good
+    /// wherever one of them is; `probes` uses probe guiding alone, `null` null-collision sampling
+    /// alone.
     pub distance: Distance,
-    /// With `integrator = "march"`: the length of a step. Shorter steps, less bias; where nothing has
-    /// voxels, each cell of the majorants counts as four.
+    /// With `integrator = "march"`: the step length. Shorter steps have less bias. In volumes
+    /// without voxels a majorant cell counts as four.
     #[schemars(range(min = 0.05, max = 100.0), extend("unit" = "voxels"))]
     pub march_step: f32,
-    /// How often a ray from the camera scatters, with the probes on. `light` makes those scatter
-    /// more often into which more light is scattered: much less noise around lamps and fires, for
-    /// more time there. `even` gives all rays about the same.
+    /// With the probes on: how often camera rays are made to scatter. `light` lets rays scatter
+    /// more often where more light is scattered towards the camera: much less noise around lamps
+    /// and fires, for more time there. `even` treats all rays about equally.
     pub scatter_probability: ScatterProbability,
-    /// How much light gets through to where a bounce looks at a lamp. `marching` reads the smoke at
-    /// evenly spread places; `residual` reads it at random where it is denser than it is at least
-    /// nearby; `ratio` reads it at random. All three are right on average.
+    /// How shadow rays estimate transmittance. `marching` is unbiased ray marching with evenly
+    /// spread samples; `residual` is residual ratio tracking against the local minimum; `ratio` is
+    /// ratio tracking. All three are unbiased.
     pub transmittance: TransmittanceEstimator,
-    /// How the distances of chance are found. `delta` reads the smoke at each step; `decomposition`
-    /// does without where the smoke is at least as dense for certain, but needs glow to have its own
-    /// walk (ratio tracking) and knows no probes; `spectral` chooses the steps in colored smoke
-    /// whatever the color of the path, with more noise. The last two are there for comparison.
+    /// How null-collision sampling draws distances. `delta` is delta tracking: it reads the density
+    /// at each step; `decomposition` is decomposition tracking: it skips reads below the local
+    /// minimum, but needs ratio tracking for emission and excludes the probes; `spectral` is
+    /// spectral tracking: it draws collisions in colored smoke regardless of the path's color, with
+    /// more noise. The last two are for comparison.
     pub tracker: Tracker,
-    /// How many probes there are, about. More of them know the light better, and take longer to
-    /// place.
+    /// The approximate number of light probes. More probes resolve the light better and take longer
+    /// to place.
     #[schemars(range(min = 64, max = 1_000_000))]
     pub probe_count: u32,
-    /// With the probes on: let them learn from a few paths, before the picture begins, what light
-    /// comes to them after it has scattered or come off surfaces. Takes longer to prepare.
+    /// With the probes on: let them learn indirect light, scattered or reflected, from a few paths
+    /// before the render starts. Takes longer to prepare.
     pub probe_learning: bool,
-    /// With the probes on: find out, before the second sample, how often to ask them in this shot:
-    /// as often as pays, down to not at all where they cost more than they bring. Off, they are
-    /// asked as often as they propose.
+    /// With the probes on: find out in a pilot pass, before the second sample, how often guiding is
+    /// worth its cost in this shot, and switch it off where it gains nothing. Without it, the
+    /// probes guide as often as they propose.
     pub share_learning: bool,
-    /// Ask the probes at the first bounces as well, not only along the rays from the camera.
+    /// Use the probes at the first bounces as well, not only along camera rays.
     pub guide_all_vertices: bool,
-    /// With the probes on: also scatter near the point that light comes from, by equal angles of
-    /// view. Finds the light around lamps and fires that are nearer to the ray than probes can
-    /// tell.
+    /// With the probes on: also use equiangular sampling, towards the point that light comes from.
+    /// Resolves the light around lamps and fires that are closer to the ray than the probes are
+    /// apart.
     pub equiangular: bool,
-    /// With the probes on: also send paths that have scattered towards the glow around the lights.
+    /// With the probes on: also guide the direction of scattered paths towards the light scattered
+    /// around lamps and fires.
     pub guide_directions: bool,
-    /// With the probes on: also send paths to metals that throw light into the smoke, by rays that
-    /// set out from the metals before the picture begins. Finds the bright bundles of light off
-    /// mirrors, and costs nothing where there are none.
+    /// With the probes on: also guide paths to metals that reflect light into the smoke, found by
+    /// photons traced before the render starts. Resolves volume caustics, and costs nothing where
+    /// there are none.
     pub guide_caustics: bool,
-    /// Spread the samples of a pixel evenly instead of at random. Less noise at no cost; off it
-    /// shows what independent samples would bring.
+    /// Use low-discrepancy samples instead of independent random ones. Less noise at no cost; off
+    /// for comparison.
     pub low_discrepancy: bool,
 }
 
@@ -120,10 +124,10 @@ pub struct Advanced {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Integrator {
-    /// By paths that are right on average, with the strategies that are on.
+    /// Path tracing with the strategies that are on: unbiased.
     #[default]
     Path,
-    /// By ray marching, the old system: biased, for comparison.
+    /// Ray marching, the old system: biased, for comparison.
     March,
 }
 
@@ -131,59 +135,59 @@ pub enum Integrator {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum BoostMode {
-    /// Spreads the steps evenly along the fire and measures the smoke in front of them apart.
+    /// Spreads the steps evenly along the fire and estimates the transmittance to them separately.
     #[default]
     Stratified,
-    /// Takes the steps where they lower the noise most for what they cost.
+    /// Places the steps where they reduce noise most for their cost.
     Optimal,
-    /// Takes more steps where the fire is bright, but never much shorter ones than a voxel.
+    /// Takes more steps where the fire is bright, none much shorter than a voxel.
     Clamped,
-    /// Takes as many as the brightness asks for, as the talk states it, without that limit.
+    /// Takes as many steps as the brightness asks for, without that limit, as in the talk.
     Literal,
 }
 
-/// How a volume seen from a vertex as a light is evaluated.
+/// How next-event estimation evaluates a volume as a light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum NeeEvaluation {
-    /// Gathers its glow all along the line of sight. Less noise for each look.
+    /// Collects emission all along the shadow ray. Less noise per sample.
     #[default]
     Line,
-    /// Takes its glow at one point. Cheaper, and noisier in and near the fire.
+    /// Evaluates the emission at one point. Cheaper, and noisier in and near the fire.
     Point,
 }
 
-/// How a vertex chooses among the lights.
+/// How next-event estimation selects a light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum LightSelection {
     /// Prefers lights that are bright, near and in front. Best with many lights.
     #[default]
     Hierarchy,
-    /// Gives each light the same chance, however weak or far.
+    /// Selects each light with the same probability, however weak or far.
     Uniform,
-    /// Prefers lights that probes nearby have seen. Less noise where walls hide the others.
+    /// Prefers lights that are visible from nearby probes. Less noise where walls hide the others.
     Probes,
 }
 
-/// How the distance to a scattering event is drawn.
+/// How the distance to a scattering event is sampled.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Distance {
-    /// By probes or by chance, weighed together.
+    /// Probe guiding and null-collision sampling, combined by MIS.
     #[default]
     Mis,
-    /// By probes alone.
+    /// Probe guiding alone.
     Probes,
-    /// By chance alone: null-collision tracking.
+    /// Null-collision sampling alone.
     Null,
 }
 
-/// How often rays from the camera scatter.
+/// How often camera rays are made to scatter.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum ScatterProbability {
-    /// The more often, the more light is scattered into them.
+    /// More often where more light is scattered towards the camera.
     #[default]
     Light,
     /// About equally often.
@@ -194,25 +198,25 @@ pub enum ScatterProbability {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum TransmittanceEstimator {
-    /// Unbiased ray marching: reads the smoke at evenly spread places.
+    /// Unbiased ray marching: reads the density at evenly spread places.
     #[default]
     Marching,
-    /// Residual ratio tracking: reads at random what is denser than the thinnest smoke nearby.
+    /// Residual ratio tracking: reads the density at random where it exceeds the local minimum.
     Residual,
-    /// Ratio tracking: reads the smoke at random.
+    /// Ratio tracking: reads the density at random places.
     Ratio,
 }
 
-/// How the scattering walk draws distances by chance.
+/// How null-collision sampling draws distances.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Tracker {
-    /// Reads the smoke at each step and heeds the color of the path.
+    /// Delta tracking: reads the density at each step and weighs colors by the path.
     #[default]
     Delta,
-    /// Does not read it where it is at least as dense for certain.
+    /// Decomposition tracking: skips reads below the local minimum of the density.
     Decomposition,
-    /// Reads it at each step, whatever the color of the path.
+    /// Spectral tracking: reads the density at each step, regardless of the path's color.
     Spectral,
 }
 
@@ -220,11 +224,11 @@ pub enum Tracker {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Preset {
-    /// Every strategy off.
+    /// All strategies off.
     Baseline,
     /// The strategies for emission on.
     Emission,
-    /// Every strategy on.
+    /// All strategies on.
     #[default]
     Full,
 }
@@ -265,16 +269,16 @@ impl Strategy {
         }
         if self.probe_mis && self.advanced.distance != Distance::Null {
             return Some(
-                "decomposition scatters without reading the medium there, so that probes cannot \
-                 weigh its distances; turn the probes off (probe_mis = false) or choose distances by \
-                 chance alone (distance = \"null\")",
+                "decomposition tracking scatters without reading the medium there, so the probes \
+                 cannot weight its distances; turn the probes off (probe_mis = false) or use \
+                 null-collision sampling alone (distance = \"null\")",
             );
         }
         if !self.emission_ratio_tracking {
             return Some(
-                "decomposition passes most of the medium unread, so that it cannot collect glow on \
-                 the way; turn ratio tracking on (emission_ratio_tracking = true) or set tracker = \
-                 \"delta\"",
+                "decomposition tracking leaves most of the medium unread, so it cannot collect \
+                 emission on the way; turn ratio tracking on (emission_ratio_tracking = true) or \
+                 set tracker = \"delta\"",
             );
         }
         None
@@ -369,7 +373,7 @@ impl std::fmt::Display for Preset {
 /// `preset` is a key of the file that no field holds: it sets the toggles that the file leaves out.
 fn add_preset_key(schema: &mut Schema) {
     let key = serde_json::json!({
-        "description": "The toggles to start from; those written beside it override it.",
+        "description": "The toggles to start from; toggles that are set beside it override it.",
         "type": "string",
         "enum": Preset::ALL.map(Preset::name),
         "default": Preset::default().name(),

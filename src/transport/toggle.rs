@@ -1,11 +1,14 @@
 //! The toggles of a [`Strategy`], one by one.
 
+use strum::{EnumIter, IntoEnumIterator};
+
 use super::strategy::Strategy;
 
 /// A toggle of the strategy.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, EnumIter)]
 pub enum Toggle {
     /// `emission_decoupling`.
+    #[default]
     EmissionDecoupling,
     /// `emission_ratio_tracking`.
     EmissionRatioTracking,
@@ -19,15 +22,11 @@ pub enum Toggle {
 
 impl Toggle {
     /// All of them, in the order of the strategy.
-    pub const ALL: [Self; 5] = [
-        Self::EmissionDecoupling,
-        Self::EmissionRatioTracking,
-        Self::MajorantBoost,
-        Self::FireAsLight,
-        Self::Probes,
-    ];
+    pub fn all() -> impl Iterator<Item = Self> {
+        Self::iter()
+    }
 
-    /// What people call it.
+    /// The name in the window and in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::EmissionDecoupling => "Emission decoupling",
@@ -83,10 +82,10 @@ mod tests {
     fn the_toggles_are_all_that_presets_set() {
         let (baseline, full) = (Preset::Baseline.strategy(), Preset::Full.strategy());
         let set = |on: bool, from: Strategy| {
-            Toggle::ALL.into_iter().fold(from, |strategy, toggle| toggle.set(&strategy, on))
+            Toggle::all().fold(from, |strategy, toggle| toggle.set(&strategy, on))
         };
         assert_eq!((set(true, baseline), set(false, full)), (full, baseline));
-        for toggle in Toggle::ALL {
+        for toggle in Toggle::all() {
             assert!(toggle.is_on(&full) && !toggle.is_on(&baseline));
             let key = toggle.key().trim_start_matches("strategy.");
             let json = serde_json::to_value(toggle.set(&baseline, true)).unwrap();

@@ -10,10 +10,11 @@ use std::f32::consts::TAU;
 use glam::{DVec3, IVec3, Vec3A};
 use rayon::prelude::*;
 
-use super::Region;
 use super::cells::CellGrid;
 use super::majorant::MajorantGrid;
+use super::region::Region;
 use crate::{
+    error::{Progress, Result, report},
     math::{Aabb, Ray},
     sampling::warp::spherical,
 };
@@ -60,7 +61,7 @@ struct Cells {
 }
 
 impl Energy {
-    /// Of a region that emits `emission`, lum ε, throughout; `None` if it emits nothing or has no
+    /// The distribution over a region that emits `emission`, lum ε, throughout; `None` if it emits nothing or has no
     /// finite volume.
     pub(super) fn uniform(region: Region, emission: f32) -> Option<Self> {
         let volume = match region {
@@ -78,41 +79,49 @@ impl Energy {
         })
     }
 
-    /// Of a volume whose `emission`, lum ε, is bounded by `majorants`; `None` if it emits nothing.
+    /// The distribution over a volume whose `emission`, lum ε, is bounded by `majorants`; `None` if it emits nothing.
     ///
     /// A cell's density is the mean of its emission and a small share of its upper bound, zero
     /// only where the upper bound is.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`](crate::error::Error::Cancelled) where `progress` says so.
     pub(super) fn varying(
         majorants: &MajorantGrid,
         emission: impl Fn(Vec3A) -> f32 + Sync,
-    ) -> Option<Self> {
+        progress: Progress,
+    ) -> Result<Option<Self>> {
         let all = majorants.grid();
         let occupied: Vec<usize> =
             (0..all.len()).filter(|&index| majorants.cells()[index].emission != 0.0).collect();
-        let first = all.cell(*occupied.first()?);
+        let Some(&first) = occupied.first() else { return Ok(None) };
+        let first = all.cell(first);
         let (low, high) = occupied.iter().fold((first, first), |(low, high), &index| {
             (low.min(all.cell(index)), high.max(all.cell(index)))
         });
         let grid = all.cropped(low, high);
-        let mut cells: Vec<Cell> = occupied
-            .into_par_iter()
-            .with_min_len(64)
-            .map(|index| {
-                let cell = all.cell(index);
-                let bounds = all.clipped(cell);
-                let mean = mean_over(&bounds, &emission);
-                let upper_bound = magnitude(majorants.cells()[index].emission);
-                Cell {
-                    index: grid.index(cell - low),
-                    order: morton(cell - low),
-                    volume: volume_of(&bounds),
-                    emission: (1.0 - SHARE_OF_BOUND) * mean + SHARE_OF_BOUND * upper_bound,
-                }
+        let emitting = |index: usize| {
+            report(progress, index as f32 / all.len() as f32)?;
+            let cell = all.cell(index);
+            let bounds = all.clipped(cell);
+            let mean = mean_over(&bounds, &emission);
+            let upper_bound = magnitude(majorants.cells()[index].emission);
+            Ok(Cell {
+                index: grid.index(cell - low),
+                order: morton(cell - low),
+                volume: volume_of(&bounds),
+                emission: (1.0 - SHARE_OF_BOUND) * mean + SHARE_OF_BOUND * upper_bound,
             })
-            .collect();
+        };
+        let cells = occupied.into_par_iter().with_min_len(64).map(emitting);
+        let mut cells = cells.collect::<Result<Vec<Cell>>>()?;
         cells.par_sort_unstable_by_key(|cell| cell.order);
-        let (cells, total) = Cells::new(grid, &cells)?;
-        Some(Self { bounds: *cells.grid.bounds(), total, support: Support::Cells(cells) })
+        let of_cells = |(cells, total): (Cells, f64)| Self {
+            bounds: *cells.grid.bounds(),
+            total,
+            support: Support::Cells(cells),
+        };
+        Ok(Cells::new(grid, &cells).map(of_cells))
     }
 
     /// About ∫ lum ε dV over the volume: local length³ × radiance per world length.

@@ -4,6 +4,7 @@ use glam::{IVec3, Vec3A};
 use rayon::prelude::*;
 
 use super::cells::{CellGrid, CellWalk};
+use crate::error::{Progress, Result, report};
 use crate::math::{Aabb, Ray};
 
 /// Bounds are raised by this factor, or lowered, so that rounding cannot lift a coefficient over
@@ -39,23 +40,26 @@ impl MajorantGrid {
     /// Takes `bounds_over` each cell of about `cell_size` inside `bounds`: the majorant there and
     /// the minorant of the extinction's largest channel. Cell faces lie at multiples of their size,
     /// so that they can agree with the bricks of a grid.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`](crate::error::Error::Cancelled) where `progress` says so.
     pub fn build(
         bounds: Aabb,
         cell_size: Vec3A,
         bounds_over: impl Fn(&Aabb) -> (Majorant, f32) + Sync,
-    ) -> Self {
+        progress: Progress,
+    ) -> Result<Self> {
         let grid = CellGrid::new(bounds, cell_size);
-        let (cells, minorants) = (0..grid.len())
-            .into_par_iter()
-            .with_min_len(64)
-            .map(|index| {
-                let (bound, minorant) = bounds_over(&grid.clipped(grid.cell(index)));
-                let Majorant { mu_t, emission } = bound;
-                let raised = Majorant { mu_t: ROUNDING * mu_t, emission: ROUNDING * emission };
-                (raised, minorant / ROUNDING)
-            })
-            .unzip();
-        Self { grid, cells, minorants }
+        let bounds_of = |index: usize| {
+            report(progress, index as f32 / grid.len() as f32)?;
+            let (bound, minorant) = bounds_over(&grid.clipped(grid.cell(index)));
+            let Majorant { mu_t, emission } = bound;
+            let raised = Majorant { mu_t: ROUNDING * mu_t, emission: ROUNDING * emission };
+            Ok((raised, minorant / ROUNDING))
+        };
+        let bounds = (0..grid.len()).into_par_iter().with_min_len(64).map(bounds_of);
+        let (cells, minorants) = bounds.collect::<Result<Vec<_>>>()?.into_iter().unzip();
+        Ok(Self { grid, cells, minorants })
     }
 
     /// The cells.
@@ -112,6 +116,7 @@ mod tests {
     use glam::UVec2;
 
     use super::*;
+    use crate::error::NO_PROGRESS;
     use crate::math::PathRng;
 
     fn checkered(region: &Aabb) -> (Majorant, f32) {
@@ -123,7 +128,7 @@ mod tests {
     #[test]
     fn the_walk_agrees_with_a_look_up_at_every_point() {
         let bounds = Aabb::new(Vec3A::new(-3.5, -2.5, 0.5), Vec3A::new(4.5, 3.5, 5.5));
-        let grid = MajorantGrid::build(bounds, Vec3A::ONE, checkered);
+        let grid = MajorantGrid::build(bounds, Vec3A::ONE, checkered, NO_PROGRESS).unwrap();
         let mut rng = PathRng::new(0, UVec2::ZERO, 0);
         let mut point = |scale: f32| {
             scale * (Vec3A::new(rng.uniform(), rng.uniform(), rng.uniform()) - Vec3A::splat(0.5))
@@ -157,7 +162,8 @@ mod tests {
     #[test]
     fn a_vast_box_gets_larger_cells_instead_of_more() {
         let bounds = Aabb::centered(Vec3A::splat(1e9));
-        let grid = MajorantGrid::build(bounds, Vec3A::splat(4.0), |_| Default::default());
+        let nothing = |_: &Aabb| Default::default();
+        let grid = MajorantGrid::build(bounds, Vec3A::splat(4.0), nothing, NO_PROGRESS).unwrap();
         assert!(grid.cells.len() <= 1 << 21 && grid.cell_size().x > 1e6);
     }
 }

@@ -1,4 +1,4 @@
-//! What fills space. Light transport reads `medium` and asks `world`; the rest is behind them.
+//! Participating media. Light transport reads `medium` and asks `world`; the rest is behind them.
 
 pub mod blackbody;
 pub mod cells;
@@ -6,12 +6,14 @@ pub mod emission;
 pub mod energy;
 pub mod field;
 pub mod grid;
+mod local_volume;
 pub mod majorant;
 pub mod medium;
 pub mod phase;
 pub mod procedural;
+mod region;
 pub mod vdb;
-mod volume;
 pub mod world;
 
-pub use volume::{CoefficientBounds, MediumProperties, Region, Volume};
+pub use local_volume::{CoefficientBounds, MediumProperties, Volume};
+pub use region::Region;

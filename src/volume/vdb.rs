@@ -17,7 +17,9 @@ mod blosc;
 mod compression;
 mod directory;
 mod entry;
+mod file;
 mod header;
+mod inflate;
 mod metadata;
 mod stream;
 mod transform;
@@ -25,48 +27,14 @@ mod tree;
 mod values;
 
 use std::path::Path;
-use std::sync::Arc;
-
-use glam::Vec3A;
 
 pub use directory::Directory;
 pub use entry::{GridClass, GridInfo};
+pub use file::{VdbFile, VdbGrid, VdbValues};
 pub use metadata::{MetaValue, Metadata};
 pub use transform::Transform;
 
-use super::grid::SparseGrid;
 use crate::error::{Progress, Result};
-
-/// A file with all its grids loaded.
-#[derive(Debug)]
-pub struct VdbFile {
-    /// Version of the file format.
-    pub version: u32,
-    /// The file's own named values.
-    pub metadata: Metadata,
-    /// The grids in the order of the file.
-    pub grids: Vec<VdbGrid>,
-}
-
-/// A grid with its voxels.
-#[derive(Debug)]
-pub struct VdbGrid {
-    /// Name, class, transform and all else but the voxels.
-    pub info: GridInfo,
-    /// The voxels.
-    pub values: VdbValues,
-}
-
-/// The voxels of a grid.
-#[derive(Clone, Debug)]
-pub enum VdbValues {
-    /// Of a float or double grid.
-    Float(Arc<SparseGrid<f32>>),
-    /// Of a vec3s or vec3d grid.
-    Vec3(Arc<SparseGrid<Vec3A>>),
-    /// Not loaded, for this reason.
-    Unsupported(String),
-}
 
 /// Loads a file with all its grids.
 ///

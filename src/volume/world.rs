@@ -4,89 +4,21 @@
 
 mod along;
 mod emissive;
+mod instance;
 
 use std::sync::Arc;
 
-pub use along::MediumRay;
-use along::VolumeEntry;
-use emissive::Emissive;
-use glam::{Affine3A, Vec3A};
+use glam::Vec3A;
 use smallvec::SmallVec;
 
-use super::{Region, Volume};
+pub use along::MediumRay;
+pub use instance::Instance;
+
+use super::region::Region;
 use crate::math::{Aabb, Bvh, Ray, Rgb};
-
-/// Up to this many volumes are tried one by one, which costs less than a hierarchy.
-const FEW: usize = 3;
-
-/// A volume placed in the world.
-#[derive(Clone, Debug)]
-pub struct Instance {
-    volume: Arc<Volume>,
-    world_from_local: Affine3A,
-    local_from_world: Affine3A,
-    bounds: Aabb,
-    /// World volume of a unit of the volume's own.
-    world_volume: f64,
-    /// Turns a bound of lum ε into collisions per length along the brightest chord.
-    emission_rate: f32,
-    voxel_rate: f32,
-}
-
-impl Instance {
-    /// Places `volume`. The placement must be invertible.
-    pub fn new(volume: Arc<Volume>, world_from_local: Affine3A) -> Self {
-        let columns = world_from_local.matrix3;
-        let lengths =
-            Vec3A::new(columns.x_axis.length(), columns.y_axis.length(), columns.z_axis.length());
-        let chord = (volume.chords() * lengths).max_element();
-        let emission_rate = if chord > 0.0 { 1.0 / chord } else { 0.0 };
-        let voxel_rate = volume.voxel().map_or(0.0, |v| 1.0 / (v * lengths.min_element()));
-        let bounds = match volume.region() {
-            Region::Everywhere => Aabb::centered(Vec3A::INFINITY),
-            region => region.bounds().transformed(&world_from_local),
-        };
-        let local_from_world = world_from_local.inverse();
-        let world_volume = columns.as_dmat3().determinant().abs();
-        Self {
-            volume,
-            world_from_local,
-            local_from_world,
-            bounds,
-            world_volume,
-            emission_rate,
-            voxel_rate,
-        }
-    }
-
-    /// The volume that is placed.
-    pub fn volume(&self) -> &Arc<Volume> {
-        &self.volume
-    }
-
-    /// From the volume's space to the world.
-    pub fn world_from_local(&self) -> &Affine3A {
-        &self.world_from_local
-    }
-
-    /// World volume of a unit of the volume's own.
-    pub fn world_volume(&self) -> f64 {
-        self.world_volume
-    }
-
-    /// A ray of the world in the volume's space; its parameter stays the world's.
-    fn local_ray(&self, ray: &Ray) -> Ray {
-        Ray::new(
-            self.local_from_world.transform_point3a(ray.origin),
-            self.local_from_world.transform_vector3a(ray.direction),
-        )
-    }
-
-    /// A box around it in the world; infinite for a volume without borders.
-    pub fn bounds(&self) -> &Aabb {
-        &self.bounds
-    }
-}
+use along::VolumeEntry;
+use emissive::Emissive;
+use instance::FEW;
 
 /// Every volume of a scene.
 #[derive(Clone, Debug, Default)]
@@ -153,7 +85,28 @@ impl World {
                 t_max
             });
         }
-        MediumRay::new(self, ray, entries)
+        MediumRay::new(&self.instances, ray, entries)
+    }
+
+    /// Whether anything emits at all.
+    pub fn emits(&self) -> bool {
+        self.emissive.any()
+    }
+
+    /// Whether anything emits where no sampled point lies: media without borders.
+    pub fn emits_beyond_lights(&self) -> bool {
+        self.emissive.has_unsampled()
+    }
+
+    /// Indices of the instances that can be sampled as lights, ascending.
+    pub fn emissive(&self) -> &[u32] {
+        self.emissive.indices()
+    }
+
+    /// Calls `visit` with each emissive instance that sampling can find along the whole of `ray`,
+    /// whose direction is a unit vector, and its [`Instance::emission_pdf_along`], above zero.
+    pub fn emissive_along(&self, ray: &Ray, visit: impl FnMut(u32, f32)) {
+        self.emissive.along(&self.instances, ray, visit);
     }
 
     /// ε at a point; `along` is any unit direction.
@@ -165,7 +118,7 @@ impl World {
         }
     }
 
-    /// What extinguishes and scatters at a point; `None` where there is nothing.
+    /// Extinction and scattering at a point; `None` where there is nothing.
     pub fn matter_at(&self, point: Vec3A) -> Option<Matter> {
         let mut medium = self.around(point, Vec3A::X);
         let segment = medium.next_segment()?;
@@ -181,7 +134,7 @@ impl World {
     }
 }
 
-/// What extinguishes and scatters at a point.
+/// Extinction and scattering at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Matter {
     /// Upper bound of μ_t around it, 1/length.

@@ -99,7 +99,7 @@ fn each_way_to_look_at_both_sides_has_its_picture() {
         for kind in kinds {
             window.click(Role::Button, kind);
             window.until("the map is there", |app| app.second_side().map().is_some());
-            assert!(window.has("gray") || window.has("Noise of B over that of A"), "{kind}");
+            assert!(window.has("(luminance)") || window.has("Noise of B / noise of A"), "{kind}");
         }
     }
     window.press(Modifiers::NONE, Key::V);
@@ -122,13 +122,13 @@ fn layers_are_compared_and_maps_go_before_them() {
     assert!(window.has("A  Baseline"), "the wipe is there still");
     window.click(Role::Button, "Difference");
     window.until("the map is there", |app| app.second_side().map().is_some());
-    assert!(window.has("B - A, gray") && !window.has("Tracking steps per sample"));
+    assert!(window.has("B − A (luminance)") && !window.has("Tracking steps per sample"));
 }
 
 /// What comes and goes above it pushes nothing from under the pointer.
 #[test]
 fn the_panel_stays_where_the_hand_is() {
-    for (role, name) in [(Role::SpinButton, "Angle of view"), (Role::CheckBox, "Majorant boost")] {
+    for (role, name) in [(Role::SpinButton, "Field of view"), (Role::CheckBox, "Majorant boost")] {
         let Some(mut window) = open() else { return };
         let at = |window: &Window| window.harness.get_by_role_and_label(role, name).rect().center();
         window.harness.get_by_role_and_label(role, name).scroll_to_me();

@@ -40,7 +40,7 @@ fn all_samples_go_to_the_rectangle_and_back_to_all() {
     let Some(mut window) = open() else { return };
     window.until("there is a picture", |app| app.engine().picture().is_some());
     window.press(Modifiers::SHIFT, Key::M);
-    assert!(window.has("Drag a rectangle over the picture."), "there has to be one first");
+    assert!(window.has("Drag a region over the picture."), "there has to be one first");
     window.click(Role::Button, "Place it");
     let area = window.app().region().area(SIZE).unwrap();
     assert_eq!(window.app().region().alone(SIZE), Some(area));
@@ -54,7 +54,7 @@ fn all_samples_go_to_the_rectangle_and_back_to_all() {
     window.press(Modifiers::SHIFT, Key::M);
     assert_eq!(window.app().region().alone(SIZE), None);
     until_fewest(&mut window, Area::of(SIZE), before.1 + 8);
-    window.click(Role::Button, "Samples only here");
+    window.click(Role::Button, "Render region only");
     assert_eq!(window.app().region().alone(SIZE), Some(area));
     window.press(Modifiers::NONE, Key::Escape);
     assert!(window.app().region().alone(SIZE).is_none(), "without it all pixels get samples");

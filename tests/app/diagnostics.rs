@@ -58,7 +58,7 @@ fn the_energy_of_cells_has_a_legend_with_numbers() {
     let path = window.folder.path().join("smoke.toml");
     std::fs::write(&path, smoke).unwrap();
     window.harness.input_mut().dropped_files.push(Arc::new(Dropped(path)));
-    window.until_it_says("No volume here emits light.");
+    window.until_it_says("No volume emits light.");
 }
 
 #[test]
@@ -77,7 +77,7 @@ fn probes_are_drawn_over_the_picture_where_there_are_any() {
     let drawn = shown_picture(&mut window);
     assert!(differing(&plain, &drawn, 0..plain.height() - 110) > 500, "no probes are drawn");
     window.press(Modifiers::NONE, Key::Num5);
-    window.until_it_says("No probe here has light.");
+    window.until_it_says("No probe receives light.");
     // Until then the panel may move under the hand.
     window.until_finished();
     window.click(Role::Button, "Off");
@@ -109,7 +109,8 @@ fn a_click_looks_into_the_ray_of_a_pixel() {
     assert!(window.has("Extinction 2") && window.has("Transmittance 1"));
     assert_eq!(window.document(), &opened, "looking is no edit");
 
-    let plot = window.harness.get_by_role_and_label(Role::Image, "Shares along the ray, share");
+    let plot =
+        window.harness.get_by_role_and_label(Role::Image, "Fractions along the ray, fraction");
     let end = plot.rect().right_center() - egui::vec2(8.0, 0.0);
     window.harness.hover_at(end);
     window.settle();
@@ -126,9 +127,9 @@ fn a_click_looks_into_the_ray_of_a_pixel() {
     window.press(Modifiers::NONE, Key::Z);
     window.press(Modifiers::NONE, Key::Z);
     click(&mut window, corner);
-    window.until_it_says("this ray meets no medium");
+    window.until_it_says("no medium along this ray");
     window.click(Role::Button, "Close window");
-    assert!(!window.has("this ray meets no medium"));
+    assert!(!window.has("no medium along this ray"));
     click(&mut window, pixel(32.0, 24.0));
     assert!(!window.has("optical depth"), "closed, clicks pick nothing");
 }

@@ -106,7 +106,7 @@ fn layers_take_the_place_of_the_picture() {
         (Layer::Direct, None),
         (Layer::Indirect, None),
         (Layer::Depth, Some("Depth, length")),
-        (Layer::Noise, Some("Standard error, gray")),
+        (Layer::Noise, Some("Noise (luminance)")),
     ] {
         window.click(Role::ComboBox, "Layer");
         window.click(Role::Button, layer.name());

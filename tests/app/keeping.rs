@@ -15,7 +15,7 @@ impl Window {
     /// Opens the field of view a little, which is a change of the scene.
     fn change(&mut self) {
         let before = self.document().settings.camera.fov_x;
-        self.harness.get_by_role_and_label(Role::SpinButton, "Angle of view").focus();
+        self.harness.get_by_role_and_label(Role::SpinButton, "Field of view").focus();
         self.settle();
         self.press(Modifiers::NONE, Key::ArrowUp);
         assert_ne!(self.document().settings.camera.fov_x, before);
@@ -40,7 +40,7 @@ impl Window {
     }
 
     fn has_camera_open(&self) -> bool {
-        self.harness.query_by_role_and_label(Role::SpinButton, "Angle of view").is_some()
+        self.harness.query_by_role_and_label(Role::SpinButton, "Field of view").is_some()
     }
 
     fn until_volume_is(&mut self, name: &str) {
@@ -70,9 +70,9 @@ fn changes_are_asked_about_before_another_scene_opens() {
     assert!(!window.app().has_unsaved_changes(), "strategies are tried all the time");
     window.change();
     window.ask_for_other();
-    assert!(window.has("scene.toml has changes that are not saved."));
+    assert!(window.has("scene.toml has unsaved changes."));
     window.click(Role::Button, "Cancel");
-    assert!(!window.has("not saved") && window.document().settings.volume[0].name == "ball");
+    assert!(!window.has("unsaved") && window.document().settings.volume[0].name == "ball");
     window.ask_for_other();
     window.click(Role::Button, "Open without saving");
     window.until_volume_is("other");
@@ -86,15 +86,15 @@ fn the_question_takes_the_keyboard_and_escape_is_an_answer() {
     window.press(Modifiers::COMMAND, Key::L);
     window.type_path("/nowhere/nothing.toml");
     window.until("the failure is told", |app| !app.notices().list().is_empty());
-    assert!(!window.has("not saved"), "what is not there cannot take the place of anything");
+    assert!(!window.has("unsaved"), "what is not there cannot take the place of anything");
     window.press(Modifiers::NONE, Key::F1);
     window.ask_for_other();
-    assert!(window.has("not saved"));
+    assert!(window.has("unsaved"));
     assert!(window.harness.get_by_role_and_label(Role::Button, "Save scene…").is_focused());
     window.press(Modifiers::NONE, Key::Escape);
-    assert!(window.has("not saved") && !window.has("Orbit around the target"), "the front first");
+    assert!(window.has("unsaved") && !window.has("Orbit around the target"), "the front first");
     window.press(Modifiers::NONE, Key::Escape);
-    assert!(!window.has("not saved") && window.document().settings.volume[0].name == "ball");
+    assert!(!window.has("unsaved") && window.document().settings.volume[0].name == "ball");
 }
 
 /// Whatever control the keyboard goes to, it is in sight.
@@ -135,9 +135,9 @@ fn a_window_with_changes_asks_before_it_closes() {
     assert!(!window.close_button().contains(&ViewportCommand::CancelClose));
     window.change();
     assert!(window.close_button().contains(&ViewportCommand::CancelClose));
-    assert!(window.has("scene.toml has changes that are not saved."));
+    assert!(window.has("scene.toml has unsaved changes."));
     window.press(Modifiers::COMMAND, Key::Z);
-    assert!(!window.has("not saved"), "nothing is left to lose");
+    assert!(!window.has("unsaved"), "nothing is left to lose");
     window.change();
     window.close_button();
     window.harness.get_by_role_and_label(Role::Button, "Close without saving").click();

@@ -86,8 +86,8 @@ fn every_kind_of_light_can_be_built_and_changed_into_every_other() {
     let Some(mut window) = with_light("Add spot") else { return };
     let stood = lights(&window)[0].position;
     for (name, kind) in [
-        ("Sphere", LightKind::Sphere),
-        ("Quad", LightKind::Quad),
+        ("Sphere light", LightKind::Sphere),
+        ("Area light", LightKind::Quad),
         ("Sun", LightKind::Sun),
         ("Point", LightKind::Point),
         ("Spot", LightKind::Spot),

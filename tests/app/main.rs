@@ -220,7 +220,7 @@ fn toggles_answer_to_clicks_keys_presets_and_undo() {
     assert!(!window.has("No effect here"), "with tracking off, decoupling does something");
     window.click(Role::CheckBox, "Emission decoupling");
     assert!(!decoupling(&window));
-    assert!(!window.has("No effect here"), "looks at the fire still have steps to boost");
+    assert!(!window.has("No effect here"), "fire as a light still has steps to boost");
     window.press(Modifiers::NONE, Key::Num4);
     assert!(!nee(&window));
     assert!(window.has("No effect here: it needs decoupling, ratio tracking or fire as a light"));
@@ -249,7 +249,7 @@ fn where_nothing_glows_the_toggles_say_so() {
 fn fire_that_lights_nothing_says_so() {
     let soot = BALL.replace("albedo = 0.4", "albedo = 0.0");
     let Some(window) = Window::open(&soot) else { return };
-    assert!(window.has("No effect here: nothing here scatters or reflects light"));
+    assert!(window.has("No effect here: nothing in this scene scatters or reflects light"));
 }
 
 #[test]
@@ -275,7 +275,7 @@ fn probes_that_do_not_pay_say_so() {
     "#;
     let Some(mut window) = Window::open(cloud) else { return };
     window.click(Role::Button, "Fixed");
-    window.until_it_says("Not asked in this picture");
+    window.until_it_says("Switched off automatically: no gain in this shot.");
 }
 
 #[test]
@@ -283,7 +283,7 @@ fn ray_marching_is_labeled_biased_wherever_it_is_on() {
     let Some(mut window) = Window::open(BALL) else { return };
     assert!(!window.has("biased") && !window.has("Biased"));
     window.click(Role::DisclosureTriangle, "Advanced");
-    window.click(Role::Button, "March");
+    window.click(Role::Button, "Ray marching");
     assert_eq!(window.document().settings.strategy.integrator, Integrator::March);
     assert!(window.has("Biased: ray marching is on"), "in the panel");
     assert!(window.harness.query_by_label("biased").is_some(), "in the status line");
@@ -291,7 +291,7 @@ fn ray_marching_is_labeled_biased_wherever_it_is_on() {
     assert_eq!(window.harness.query_all_by_label_contains(idle).count(), 4);
     window.click(Role::Button, "Baseline");
     assert!(window.has("Biased: ray marching is on"), "a preset leaves the integrator alone");
-    window.click(Role::Button, "Path");
+    window.click(Role::Button, "Path tracing");
     assert!(!window.has("biased") && !window.has("Biased"));
 }
 
@@ -317,9 +317,9 @@ fn every_finer_choice_can_be_made() {
     assert_eq!(advanced(&window).light_selection, LightSelection::Uniform);
     window.click(Role::Button, "Residual");
     assert_eq!(advanced(&window).transmittance, TransmittanceEstimator::Residual);
-    window.click(Role::CheckBox, "Spread samples");
+    window.click(Role::CheckBox, "Low-discrepancy samples");
     assert!(!advanced(&window).low_discrepancy);
-    assert_eq!(window.app().editor().undo_name(), Some("spread samples"));
+    assert_eq!(window.app().editor().undo_name(), Some("low-discrepancy samples"));
 
     // What an idle toggle would use is dimmed.
     window.press(Modifiers::NONE, Key::Num4);
@@ -337,17 +337,17 @@ fn a_tracker_is_offered_where_it_may_be_used_and_gives_way() {
         !button.accesskit_node().is_disabled()
     };
     assert!(!offered(&window));
-    assert!(window.has("probes cannot weigh its distances"));
+    assert!(window.has("probes cannot weight its distances"));
     window.click(Role::Button, "Spectral");
     assert_eq!(tracker(&window), Tracker::Spectral);
 
     window.press(Modifiers::NONE, Key::Num5);
-    assert!(offered(&window) && !window.has("Not beside the present settings"));
+    assert!(offered(&window) && !window.has("Not available with these settings"));
     window.click(Role::Button, "Decomposition");
     assert_eq!(tracker(&window), Tracker::Decomposition);
     window.press(Modifiers::NONE, Key::Num2);
     assert_eq!(tracker(&window), Tracker::Delta, "ratio tracking went off");
-    assert!(window.has("cannot collect glow on the way"));
+    assert!(window.has("cannot collect emission "));
     window.press(Modifiers::COMMAND, Key::Z);
     assert_eq!(tracker(&window), Tracker::Decomposition);
     window.click(Role::Button, "Full");
@@ -490,7 +490,7 @@ fn the_panels_fold_and_the_menus_know_the_commands() {
     assert!(wide(&window) > before + 200.0);
     assert!(window.harness.query_by_role_and_label(Role::CheckBox, "Majorant boost").is_none());
     window.click(Role::Button, "View");
-    let item = window.harness.get_by_label_contains("Fold the panels");
+    let item = window.harness.get_by_label_contains("Show or hide the panels");
     item.click();
     window.harness.step();
     window.settle();

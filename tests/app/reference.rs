@@ -86,9 +86,9 @@ fn a_rectangle_is_drawn_moved_by_numbers_and_taken_away() {
     let Some(mut window) = open() else { return };
     let opened = window.document().clone();
     window.press(Modifiers::NONE, Key::M);
-    assert!(window.has("Drag a rectangle over the picture."));
+    assert!(window.has("Drag a region over the picture."));
     window.press(Modifiers::NONE, Key::Escape);
-    assert!(!window.has("Drag a rectangle over the picture."));
+    assert!(!window.has("Drag a region over the picture."));
 
     window.draw_rectangle([20.5, 15.5], [8.5, 9.5]);
     assert_eq!(window.area(), Some(area(8, 9, 13, 7)), "from any corner, whole pixels");
@@ -102,7 +102,7 @@ fn a_rectangle_is_drawn_moved_by_numbers_and_taken_away() {
     assert!(part.sides[0].noise.unwrap() < 0.9 * whole, "the ball is bright there");
     assert!(window.has("noise ") && window.has(" ± "), "the row says so");
 
-    let field = window.harness.get_by_role_and_label(Role::SpinButton, "Rectangle width");
+    let field = window.harness.get_by_role_and_label(Role::SpinButton, "Region width");
     field.set_value_accesskit(99.0);
     window.harness.step();
     window.settle();
@@ -214,9 +214,9 @@ fn references_that_do_not_fit_are_told_with_the_mend() {
 
     let wide = window.gray("wide.npy", [40, 24], 0.25);
     window.load_reference(&wide);
-    window.until_it_says("It has 40 × 24 pixels and the picture 32 × 24.");
+    window.until_it_says("It has 40 × 24 pixels, the picture 32 × 24.");
     assert!(window.app().reference().errors().is_none());
-    window.click(Role::Button, "Take its size");
+    window.click(Role::Button, "Use its size");
     window.until_finished();
     assert_eq!(window.picture().size, UVec2::new(40, 24));
     window.until_measured();
@@ -233,9 +233,9 @@ fn dropped_pictures_are_opened_or_measured_against_as_one_chooses() {
     window.click(Role::Button, "Use as reference");
     window.until_measured();
     assert_eq!(window.app().reference().errors().unwrap()[0].rel_mse.mean, 0.0);
-    assert!(!window.has("Errors say little"));
+    assert!(!window.has("Errors mean little"));
     window.press(Modifiers::NONE, Key::F);
-    assert!(window.has("Errors say little: it has another camera."));
+    assert!(window.has("Errors mean little: its camera differs."));
 
     // Another scene has another reference, and this one its own when it is opened again.
     let scene = window.folder.path().join("scene.toml");
@@ -253,8 +253,8 @@ fn dropped_pictures_are_opened_or_measured_against_as_one_chooses() {
     let mut window = window.restart(&scene);
     window.until("it is there after a restart too", is_first);
     window.drop_file(exr);
-    window.click(Role::Button, "Open it");
-    window.until_it_says("it goes on from 16 spp");
+    window.click(Role::Button, "Open");
+    window.until_it_says("resumed from 16 spp");
 }
 
 #[test]
@@ -274,19 +274,19 @@ fn the_picture_itself_becomes_the_reference_of_both_sides() {
     assert!(errors[0].rel_mse.mean > 0.0 && errors[0].flip.mean > 0.0, "the baseline is noisier");
     assert_eq!(errors[1].flip.mean, 0.0);
     window.click(Role::Button, "Error");
-    window.until_it_says("Squared error of A, relative");
+    window.until_it_says("Relative squared error of A");
     let slider = window.harness.get_by_role_and_label(Role::Slider, "Density");
     slider.set_value_accesskit(5.0);
     window.harness.step();
     window.settle();
-    assert!(window.has("Errors say little: the scene has changed since."));
+    assert!(window.has("Errors mean little: the scene has changed since."));
 }
 
 #[test]
 fn a_snapshot_is_one_side_against_the_live_picture() {
     let Some(mut window) = open() else { return };
     window.press(Modifiers::SHIFT, Key::A);
-    assert!(window.has("There is no snapshot to compare with"));
+    assert!(window.has("No snapshot is shown to compare with"));
     window.keep("scene full");
     window.click(Role::Button, "Baseline");
     window.until_finished();
@@ -330,7 +330,7 @@ fn a_snapshot_is_one_side_against_the_live_picture() {
     window.until_finished();
     assert!(window.has("A  Live: custom") && window.has("B  Snapshot scene baseline"));
     window.press(Modifiers::NONE, Key::Escape);
-    assert!(!window.has("B  Snapshot") && !window.has("Stored: "));
+    assert!(!window.has("B  Snapshot") && !window.has("Snapshot: "));
 
     // Two strategies give way to a snapshot, and undo brings them back.
     window.press(Modifiers::NONE, Key::C);
@@ -351,9 +351,9 @@ fn a_snapshot_of_another_size_offers_its_size() {
     });
     window.press(Modifiers::NONE, Key::ArrowLeft);
     window.press(Modifiers::SHIFT, Key::B);
-    window.until_it_says("The snapshot has 32 × 24 pixels, the live picture others.");
+    window.until_it_says("The snapshot has 32 × 24 pixels, the live picture another size.");
     assert!(window.app().second_side().comparison().is_none());
-    window.click(Role::Button, "Take its size");
+    window.click(Role::Button, "Use its size");
     window.until("they can be compared", |app| app.second_side().comparison().is_some());
     assert!(!window.has("The snapshot has 32 × 24 pixels"));
 }
@@ -380,7 +380,7 @@ fn a_biased_side_is_labeled_whichever_is_edited() {
     let says = |window: &Window, text: &str| window.harness.query_all_by_label(text).count() == 2;
     window.press(Modifiers::NONE, Key::B);
     window.click(Role::DisclosureTriangle, "Advanced");
-    window.click(Role::Button, "March");
+    window.click(Role::Button, "Ray marching");
     assert!(window.has("A  Ray marching") && says(&window, "A is biased"));
     window.press(Modifiers::NONE, Key::B);
     assert!(window.has("A  Ray marching") && says(&window, "A is biased"));
@@ -453,7 +453,7 @@ fn the_views_of_a_comparison_look_as_they_did() {
                         && errors[0].rel_mse.mean > 0.0
                 })
             });
-            window.until_it_says("Squared error of A, relative");
+            window.until_it_says("Relative squared error of A");
         } else if !["wipe", "beside"].contains(&name) {
             window.until("the map is there", |app| app.second_side().map().is_some());
         }

@@ -72,7 +72,9 @@ fn headless(settings: &Settings, spp: u32) -> Film {
     let scene = scene::assemble(settings, &VolumeCache::default(), NO_PROGRESS).unwrap();
     let size = UVec2::from(settings.film.size);
     let job = RenderJob {
-        sampler: Arc::new(Frame::new(Arc::new(scene), size, settings.film.seed)),
+        sampler: Arc::new(
+            Frame::new(Arc::new(scene), size, settings.film.seed, NO_PROGRESS).unwrap(),
+        ),
         size,
         limits: Limits { spp, seconds: None },
         resume: None,
@@ -109,7 +111,7 @@ fn a_kept_picture_is_flipped_to_against_the_live_one() {
 
     let generation = window.app().engine().picture().unwrap().generation;
     window.press(Modifiers::NONE, Key::ArrowLeft);
-    assert!(window.has("Stored: scene full, 4.0 spp"));
+    assert!(window.has("Snapshot: scene full, 4.0 spp"));
     assert!(same(&kept, &window.shown_without_cursor()));
     window.press(Modifiers::NONE, Key::ArrowLeft);
     assert!(same(&kept, &window.shown_without_cursor()), "there is none before the first");
@@ -117,10 +119,10 @@ fn a_kept_picture_is_flipped_to_against_the_live_one() {
     assert!(!same(&kept, &window.shown_without_cursor()), "exposure is that of the window");
     window.press(Modifiers::SHIFT, Key::E);
     window.press(Modifiers::NONE, Key::ArrowRight);
-    assert!(!window.has("Stored: ") && same(&live, &window.shown_without_cursor()));
+    assert!(!window.has("Snapshot: ") && same(&live, &window.shown_without_cursor()));
     window.press(Modifiers::NONE, Key::ArrowLeft);
     window.press(Modifiers::NONE, Key::Escape);
-    assert!(!window.has("Stored: ") && same(&live, &window.shown_without_cursor()));
+    assert!(!window.has("Snapshot: ") && same(&live, &window.shown_without_cursor()));
     assert_eq!(window.app().engine().picture().unwrap().generation, generation);
 
     // What is shown is what is saved, until an edit asks for the live picture again.
@@ -128,9 +130,9 @@ fn a_kept_picture_is_flipped_to_against_the_live_one() {
     let exr = window.save(Modifiers::COMMAND, "stored.exr");
     let stored = scene::settings_of(&read_snapshot(&exr).unwrap().header, "").unwrap();
     assert_eq!(stored.volume[0].density.scale.gray(), Some(2.0));
-    assert!(window.has("Stored: "));
+    assert!(window.has("Snapshot: "));
     window.set_density(3.0);
-    assert!(!window.has("Stored: "));
+    assert!(!window.has("Snapshot: "));
 }
 
 #[test]
@@ -172,14 +174,14 @@ fn snapshots_are_named_deleted_brought_back_and_there_again_after_a_restart() {
     let kept = window.shown_without_cursor();
     window.type_into("Snapshot name", "thin smoke");
     window.type_into("Snapshot note", "for the second shot");
-    assert!(window.has_snapshot("thin smoke") && window.has("Stored: thin smoke"));
+    assert!(window.has_snapshot("thin smoke") && window.has("Snapshot: thin smoke"));
     window.press(Modifiers::NONE, Key::Escape);
 
     window.press(Modifiers::NONE, Key::ArrowLeft);
     window.press(Modifiers::NONE, Key::Delete);
     assert!(!window.has_snapshot("scene full 3"));
     window.click(Role::Button, "Undo delete");
-    assert!(window.has("Stored: scene full 3"));
+    assert!(window.has("Snapshot: scene full 3"));
     window.press(Modifiers::NONE, Key::ArrowLeft);
     window.press(Modifiers::NONE, Key::Delete);
     assert!(!window.has_snapshot("scene full 2"));
@@ -190,7 +192,7 @@ fn snapshots_are_named_deleted_brought_back_and_there_again_after_a_restart() {
     window.click(Role::Button, "Fixed");
     window.until_finished();
     window.click(Role::Button, "Snapshot thin smoke");
-    window.until_it_says("Stored: thin smoke");
+    window.until_it_says("Snapshot: thin smoke");
     assert!(same(&kept, &window.shown_without_cursor()));
     let note = window.harness.get_by_role_and_label(Role::TextInput, "Snapshot note");
     assert_eq!(note.value().as_deref(), Some("for the second shot"));
@@ -204,12 +206,14 @@ fn a_snapshot_of_the_strip_is_gone_on_from() {
     window.keep("scene full");
     window.set_density(5.0);
     window.press(Modifiers::NONE, Key::ArrowLeft);
-    window.click(Role::Button, "Go on from it");
+    window.click(Role::Button, "Resume from this");
     // The density of before would be lost.
     window.click(Role::Button, "Open without saving");
-    window.until_it_says("scene full: it goes on from 4 spp. The limit it had reached is lifted.");
+    window.until_it_says(
+        "scene full: resumed from 4 spp. It had reached its max samples; the limit is now off.",
+    );
     window.settle();
-    assert!(!window.has("Stored: "));
+    assert!(!window.has("Snapshot: "));
     let preferences = window.folder.path().join("data").join("window.json");
     let preferences: serde_json::Value =
         serde_json::from_slice(&std::fs::read(preferences).unwrap()).unwrap();
@@ -236,7 +240,7 @@ fn a_reopened_snapshot_goes_on_to_the_uninterrupted_film() {
     write_snapshot(&path, &settings, 3);
     window.press(Modifiers::COMMAND, Key::O);
     window.type_path(path.to_str().unwrap());
-    window.until_it_says("half.exr: it goes on from 3 spp.");
+    window.until_it_says("half.exr: resumed from 3 spp.");
     window.until_finished();
     let stats = window.app().engine().picture().unwrap().stats;
     assert!(stats.samples_per_pixel == 8.0 && stats.seconds > 1000.0, "{stats:?}");
@@ -263,15 +267,15 @@ fn a_snapshot_that_cannot_go_on_says_why() {
     *other.last_mut().unwrap() ^= 1;
     std::fs::write(&volume, &other).unwrap();
     window.drop_file(path);
-    window.click(Role::Button, "Open it");
-    window.until_it_says("old.exr: it cannot be continued and is rendered anew");
+    window.click(Role::Button, "Open");
+    window.until_it_says("old.exr: cannot be resumed and is rendered from the start");
     assert!(window.has("fire.vdb has other content"));
     assert_eq!(window.document().settings.film.size, [8, 6]);
 
     let foreign = window.folder.path().join("foreign.exr");
     ::exr::prelude::write_rgb_file(&foreign, 4, 4, |_, _| (0.5f32, 0.5f32, 0.5f32)).unwrap();
     window.drop_file(foreign);
-    window.click(Role::Button, "Open it");
+    window.click(Role::Button, "Open");
     window.until_it_says("not written by Flambeau");
     assert_eq!(window.document().settings.film.size, [8, 6], "what was open stays open");
 }
@@ -285,7 +289,7 @@ fn what_is_no_snapshot_is_skipped_and_told() {
     std::fs::create_dir_all(&odd).unwrap();
     std::fs::write(odd.join("snapshot.toml"), "name = 3").unwrap();
     let Some(mut window) = Window::start(folder, &scene) else { return };
-    window.until_it_says("Not all snapshots can be shown");
+    window.until_it_says("Some snapshots cannot be shown");
     assert!(window.has("odd"));
     window.click(Role::Button, "Fixed");
     window.until_finished();

@@ -98,7 +98,7 @@ fn a_morning_with_the_window() {
 
     // The next day.
     let mut window = window.restart(&exr);
-    assert!(window.has("it goes on from"), "{:?}", window.app().notices().list());
+    assert!(window.has("resumed from"), "{:?}", window.app().notices().list());
     window.until("there is a picture", |app| app.engine().is_current());
     let paths = |app: &App| app.engine().picture().unwrap().stats.paths;
     assert!(paths(window.app()) >= kept.totals.paths, "it begins where it ended");

@@ -52,8 +52,11 @@ fn a_key_tries_all_strategies_and_a_button_uses_the_best() {
     window.until("there is a picture", |app| app.engine().is_current());
     window.until_quick();
     assert!(window.has("Cancelled before all strategies had their time."));
-    window.click(Role::Button, "Try again");
-    assert!(window.has("Trying strategies") && is_held(window.app()), "the live render waits");
+    window.click(Role::Button, "Sweep again");
+    assert!(
+        window.has("Sweep: trying strategies") && is_held(window.app()),
+        "the live render waits"
+    );
     window.until_swept();
     assert!(!is_held(window.app()) && !window.has("Cancelled before"));
 
@@ -74,26 +77,27 @@ fn a_key_tries_all_strategies_and_a_button_uses_the_best() {
     let expected = Toggle::MajorantBoost.set(&Preset::Full.strategy(), false);
     assert_eq!(window.document().settings.strategy, expected);
     assert!(window.has(&format!("In use: {}", kind.name())));
-    assert!(!window.has("was edited since"), "toggles are what was tried");
+    assert!(!window.has("has changed since"), "toggles are what was tried");
     window.press(Modifiers::COMMAND, Key::Z);
     assert_eq!(window.document().settings.strategy, Preset::Full.strategy());
 }
 
-/// What was found is no longer of the shot once that is edited, and the live render goes on at once.
+/// What was found is no longer of the shot once that is edited, and the live render goes on at
+/// once.
 #[test]
 fn results_of_another_shot_say_so() {
     let Some(mut window) = open() else { return };
     window.until("there is a picture", |app| app.engine().is_current());
     window.until_quick();
-    assert!(!window.has("was edited since"));
+    assert!(!window.has("has changed since"));
     window.sweep();
     window.until("the live render waits", is_held);
     window.press(Modifiers::NONE, Key::F);
     assert!(!is_held(window.app()), "it shows something else now");
     window.until_swept();
-    assert!(window.has("The shot or a finer choice was edited since: try again."));
+    assert!(window.has("The shot or an advanced setting has changed since: sweep again."));
     window.press(Modifiers::COMMAND, Key::Z);
-    assert!(!window.has("was edited since"), "undo brings the shot back");
+    assert!(!window.has("has changed since"), "undo brings the shot back");
 }
 
 /// The strategy goes to the side that is edited.

@@ -6,8 +6,7 @@ use crate::common::{
     self, Verdicts, all_strategies, build, measure_closely, measure_enough, name, with_strategy,
 };
 use flambeau::transport::{
-    Frame, PixelSampler,
-    probes::Probes,
+    Frame, PreparedFrame,
     strategy::{Advanced, BoostMode, Preset, Strategy},
 };
 use glam::UVec2;
@@ -105,7 +104,7 @@ fn the_error_falls_as_one_over_n() {
     let advanced = Advanced { low_discrepancy: false, ..Advanced::default() };
     let scene = with_strategy(&build(EVERYTHING), Strategy { advanced, ..Strategy::default() });
     let size = UVec2::splat(24);
-    let frame = Frame::new(Arc::new(scene), size, common::seed());
+    let frame = crate::common::frame_of(Arc::new(scene), size, common::seed());
     let errors: Vec<[f64; 4]> = (0..size.element_product())
         .into_par_iter()
         .map(|i| {
@@ -141,9 +140,14 @@ fn gray_media_take_a_shortcut_to_the_same_paths() {
     let text = |albedo: &str| EVERYTHING.replace("albedo = [0.9, 0.8, 0.7]", albedo);
     let scene = |albedo: &str| Arc::new(build(&text(albedo).replace("albedo = 0.3", albedo)));
     // The same for all: what probes learn from paths hangs on last digits as well.
-    let probes = Probes::new(&scene("albedo = 0.8")).map(Arc::new);
+    let probes = crate::common::probes_of(&scene("albedo = 0.8")).map(Arc::new);
     let frame = |albedo: &str| {
-        Frame::with_probes(scene(albedo), UVec2::splat(32), common::seed(), probes.clone())
+        crate::common::prepared(Frame::with_probes(
+            scene(albedo),
+            UVec2::splat(32),
+            common::seed(),
+            probes.clone(),
+        ))
     };
     let (gray, colored) = (frame("albedo = 0.8"), frame("albedo = [0.8, 0.8, 0.80000001]"));
     let nearly = frame("albedo = [0.8, 0.8, 0.8000001]");
@@ -160,6 +164,6 @@ fn gray_media_take_a_shortcut_to_the_same_paths() {
     assert!(same * 1000 >= count * 998 && lit * 10 > count, "{same} of {count}, {lit} lit");
 }
 
-fn frame_pixels(frame: &Frame) -> u32 {
+fn frame_pixels(frame: &PreparedFrame) -> u32 {
     frame.size().element_product()
 }

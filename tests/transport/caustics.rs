@@ -6,7 +6,6 @@ use crate::common::{
 };
 use flambeau::transport::{
     PathSample,
-    probes::Probes,
     strategy::{Advanced, Distance, Preset, ScatterProbability, Strategy},
 };
 use glam::Vec3A;
@@ -209,7 +208,7 @@ fn probes_know_bundles_of_light() {
     let radiance = |guide_caustics, point| {
         let strategy = with(|a| (a.guide_caustics, a.probe_learning) = (guide_caustics, false));
         let scene = with_strategy(&build(&format!("{MIST}{MIRROR}")), strategy);
-        Probes::new(&scene).unwrap().radiance_at(point, Vec3A::Y)
+        crate::common::probes_of(&scene).unwrap().radiance_at(point, Vec3A::Y)
     };
     // The middle of the bundle goes from the image (-2, 0, 2.6) through (-1.2, 0, 1.9).
     let inside = Vec3A::new(0.0, 0.0, 0.85);

@@ -17,7 +17,7 @@ use flambeau::{
     render::{Film, estimate::PixelEstimate},
     scene::{self, Overrides, VolumeCache},
     transport::{
-        Frame, PathSample, PixelSampler, Scene,
+        Frame, PathSample, PreparedFrame, Scene, prepare,
         probes::Probes,
         strategy::{
             Advanced, BoostMode, Distance, LightSelection, NeeEvaluation, ScatterProbability,
@@ -271,12 +271,27 @@ pub fn name(strategy: &Strategy) -> String {
     .collect()
 }
 
+/// A scene on a film, its pilot pass run.
+pub fn frame_of(scene: impl Into<Arc<Scene>>, size: UVec2, seed: u64) -> PreparedFrame {
+    PreparedFrame::new(scene.into(), size, seed, NO_PROGRESS).unwrap()
+}
+
+/// A frame whose pilot pass has run.
+pub fn prepared(frame: Frame) -> PreparedFrame {
+    frame.prepared(NO_PROGRESS).unwrap()
+}
+
+/// The probes of a scene, if its strategy asks for any.
+pub fn probes_of(scene: &Scene) -> Option<Probes> {
+    prepare::probes(scene, NO_PROGRESS).unwrap()
+}
+
 /// Probes by the scene they were placed in.
 type Placed = Vec<(Scene, Option<Arc<Probes>>)>;
 
 /// A scene on a square film. Strategies that ask for the same probes of one scene share them, as in
 /// the window: to place them anew for each of a hundred settings takes longer than the paths.
-pub fn framed(scene: &Scene, side: u32) -> Frame {
+pub fn framed(scene: &Scene, side: u32) -> PreparedFrame {
     static PLACED: Mutex<Placed> = Mutex::new(Vec::new());
     let same = |(other, _): &&(Scene, Option<Arc<Probes>>)| {
         let [one, two] = [scene, other].map(|scene| scene.world.instances());
@@ -287,11 +302,11 @@ pub fn framed(scene: &Scene, side: u32) -> Frame {
     };
     let known = PLACED.lock().unwrap().iter().find(same).map(|(_, probes)| probes.clone());
     let probes = known.unwrap_or_else(|| {
-        let probes = Probes::new(scene).map(Arc::new);
+        let probes = probes_of(scene).map(Arc::new);
         PLACED.lock().unwrap().push((scene.clone(), probes.clone()));
         probes
     });
-    Frame::with_probes(Arc::new(scene.clone()), UVec2::splat(side), seed(), probes)
+    prepared(Frame::with_probes(Arc::new(scene.clone()), UVec2::splat(side), seed(), probes))
 }
 
 /// Side of the film that single-value scenes are rendered on.
@@ -306,12 +321,12 @@ pub fn measure_with(scene: &Scene, paths: u32, of: impl Fn(&PathSample) -> Rgb +
 /// The mean radiance over the whole film where one scene takes over from the other, each with as
 /// many of the samples.
 pub fn measure_one_after_another(scenes: &[Scene], paths: u32) -> Estimate {
-    let frames: Vec<Frame> = scenes.iter().map(|scene| framed(scene, SIDE)).collect();
+    let frames: Vec<PreparedFrame> = scenes.iter().map(|scene| framed(scene, SIDE)).collect();
     measure_in_turn(&frames, paths, PathSample::beauty)
 }
 
 fn measure_in_turn(
-    frames: &[Frame],
+    frames: &[PreparedFrame],
     paths: u32,
     of: impl Fn(&PathSample) -> Rgb + Sync,
 ) -> Estimate {
@@ -339,7 +354,7 @@ impl Rows {
     fn add<'f>(
         &mut self,
         samples: u32,
-        frame: impl Fn(u32) -> &'f Frame + Sync,
+        frame: impl Fn(u32) -> &'f PreparedFrame + Sync,
         of: impl Fn(&PathSample) -> Rgb + Sync,
     ) {
         let present = self.samples;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::common::{self, build};
 use flambeau::transport::{
-    Frame, PathSample, PixelSampler,
+    PathSample,
     strategy::{BoostMode, Preset, Strategy},
     tracking::MOST_COLLISIONS,
 };
@@ -14,7 +14,7 @@ use glam::UVec2;
 fn paths(text: &str, strategy: Strategy) -> Vec<PathSample> {
     let scene = common::with_strategy(&build(text), strategy);
     let size = UVec2::splat(6);
-    let frame = Frame::new(Arc::new(scene), size, 0);
+    let frame = crate::common::frame_of(Arc::new(scene), size, 0);
     (0..size.x * size.y).map(|i| frame.sample(UVec2::new(i % size.x, i / size.x), 0)).collect()
 }
 

@@ -210,7 +210,7 @@ fn guides_agree_on_shafts_of_light() {
 fn probes(text: &str, count: u32) -> (Scene, Option<Probes>) {
     let advanced = Advanced { probe_count: count, ..Advanced::default() };
     let scene = with_strategy(&build(text), Strategy { advanced, ..Preset::Full.strategy() });
-    let probes = Probes::new(&scene);
+    let probes = crate::common::probes_of(&scene);
     (scene, probes)
 }
 
@@ -293,7 +293,7 @@ fn probes_learn_of_light_around_corners() {
     let radiance = |probe_learning| {
         let advanced = Advanced { probe_learning, ..Advanced::default() };
         let scene = with_strategy(&build(text), Strategy { advanced, ..Preset::Full.strategy() });
-        let probes = Probes::new(&scene).unwrap();
+        let probes = crate::common::probes_of(&scene).unwrap();
         probes.radiance_at(glam::Vec3A::new(0.0, 0.0, 0.5), glam::Vec3A::Y)
     };
     let alone = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
@@ -309,5 +309,5 @@ fn without_scattering_there_are_no_probes() {
     let scene = build(&dark);
     let advanced = Advanced { distance: Distance::Null, ..Advanced::default() };
     let strategy = Strategy { advanced, ..Preset::Full.strategy() };
-    assert!(Probes::new(&with_strategy(&scene, strategy)).is_none());
+    assert!(crate::common::probes_of(&with_strategy(&scene, strategy)).is_none());
 }

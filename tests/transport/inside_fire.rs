@@ -12,7 +12,7 @@ use flambeau::{
     transport::{
         PathSample, Scene,
         direct::{self, PrevVertex},
-        emission::{EmissionEstimator, RayKind},
+        emission::{EmissionEstimator, ray::RayKind},
         strategy::{Preset, Strategy},
         vertex::Vertex,
     },
@@ -162,7 +162,7 @@ fn second_moments(scene: &Scene, depth: f32) -> [f64; 3] {
     let vertex = vertex_below(depth);
     let [instance] = scene.world.instances() else { panic!("one volume") };
     let solid_angle = 2.0 * TAU / f64::from(STEPS * STEPS);
-    let emission_estimator = EmissionEstimator::new(scene, UVec2::ONE);
+    let emission_estimator = EmissionEstimator::new(&scene.strategy, 0.0);
     (0..STEPS * STEPS)
         .into_par_iter()
         .map(|i| {
@@ -216,7 +216,7 @@ fn mis_bounds_the_variance_near_the_border() {
 #[test]
 fn no_look_from_inside_exceeds_the_brightest_ray() {
     let slab = glowing_slab();
-    let emission_estimator = EmissionEstimator::new(&slab, UVec2::ONE);
+    let emission_estimator = EmissionEstimator::new(&slab.strategy, 0.0);
     let choice = direct::choice(&slab.strategy);
     let brightest = 0.5_f32;
     let mut sums = [0.0; 2];

@@ -93,7 +93,7 @@ fn by(light_selection: LightSelection) -> Strategy {
 
 fn scored(text: &str, strategy: Strategy) -> (Scene, Probes) {
     let scene = with_strategy(&build(text), strategy);
-    let probes = Probes::new(&scene).unwrap();
+    let probes = crate::common::probes_of(&scene).unwrap();
     (scene, probes)
 }
 
@@ -241,7 +241,8 @@ fn whichever_way_lights_are_chosen_there_is_one_picture() {
 fn scores_come_where_lights_are_chosen_by_them() {
     let scores = |strategy: Strategy| {
         let scene = with_strategy(&build(&walls()), strategy);
-        Probes::new(&scene).is_some_and(|probes| probes.scores(Vec3A::new(0.5, 0.0, 0.0)).is_some())
+        crate::common::probes_of(&scene)
+            .is_some_and(|probes| probes.scores(Vec3A::new(0.5, 0.0, 0.0)).is_some())
     };
     let probes = by(LightSelection::Probes);
     assert!(scores(probes));

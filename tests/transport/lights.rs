@@ -8,6 +8,7 @@
 use std::{f64::consts::TAU, sync::Arc};
 
 use crate::common::{self, Z_LIMIT, build};
+use flambeau::error::NO_PROGRESS;
 use flambeau::math::{Aabb, OrthonormalBasis, PathRng, Ray, Rgb, luminance};
 use flambeau::sampling::warp::about_axis;
 use flambeau::volume::emission::Emission;
@@ -274,7 +275,8 @@ fn glowing(region: Region, emission: f32) -> Arc<Volume> {
     };
     Arc::new(match region {
         Region::Box(bounds) => {
-            Volume::varying(bounds, properties, 0.3 * bounds.size().max(Vec3A::splat(1e-30)), None)
+            let cells = 0.3 * bounds.size().max(Vec3A::splat(1e-30));
+            Volume::varying(bounds, properties, cells, None, NO_PROGRESS).unwrap()
         }
         region => Volume::uniform(region, properties),
     })

@@ -7,7 +7,7 @@ use crate::common::{self, Estimate, POWER, Verdicts, Z_LIMIT, build, measure, wi
 use flambeau::{
     math::mean,
     transport::{
-        Frame, PathSample, PixelSampler, Scene,
+        PathSample, Scene,
         strategy::{Advanced, Integrator, NeeEvaluation, Preset, Strategy},
         tracking::MOST_COLLISIONS,
     },
@@ -252,7 +252,7 @@ fn furnaces_are_exact_however_long_the_step() {
 /// The samples of a small picture.
 fn samples(scene: &Scene, strategy: Strategy) -> Vec<PathSample> {
     let size = UVec2::splat(6);
-    let frame = Frame::new(Arc::new(with_strategy(scene, strategy)), size, 0);
+    let frame = crate::common::frame_of(Arc::new(with_strategy(scene, strategy)), size, 0);
     let pixel = |i: u32| UVec2::new(i % size.x, i / size.x);
     (0..4 * size.x * size.y).map(|i| frame.sample(pixel(i / 4), i % 4)).collect()
 }

@@ -7,7 +7,7 @@ use crate::common::{Z_LIMIT, build, with_strategy};
 use flambeau::{
     math::ACCUMULATORS,
     render::{Film, estimate::PixelEstimate},
-    transport::{Frame, PixelSampler, Scene, probes::Probes, strategy::Strategy},
+    transport::{Frame, PreparedFrame, Scene, strategy::Strategy},
 };
 use glam::UVec2;
 use rayon::prelude::*;
@@ -48,9 +48,11 @@ const SCENE: &str = r#"
 /// `samples` samples, and the variance of that mean between seeds.
 fn variances(scene: &Scene, samples: u32) -> Vec<[f64; 2]> {
     let (scene, size) = (Arc::new(scene.clone()), UVec2::splat(SIDE));
-    let probes = Probes::new(&scene).map(Arc::new);
-    let frame = |seed| Frame::with_probes(scene.clone(), size, seed, probes.clone());
-    let frames: Vec<Frame> = (0..SEEDS).map(frame).collect();
+    let probes = crate::common::probes_of(&scene).map(Arc::new);
+    let frame = |seed| {
+        crate::common::prepared(Frame::with_probes(scene.clone(), size, seed, probes.clone()))
+    };
+    let frames: Vec<PreparedFrame> = (0..SEEDS).map(frame).collect();
     (0..SIDE * SIDE)
         .into_par_iter()
         .map(|i| {

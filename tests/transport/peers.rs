@@ -9,7 +9,7 @@ use flambeau::{
         estimate::{PixelEstimate, gray},
     },
     transport::{
-        Frame, PixelSampler, Scene,
+        Scene,
         strategy::{BoostMode, Preset, Strategy},
     },
 };
@@ -25,7 +25,7 @@ type Pixel = [f64; 2];
 
 fn render(scene: &Scene, samples: u32) -> Vec<Pixel> {
     let size = UVec2::splat(SIDE as u32);
-    let frame = Frame::new(Arc::new(scene.clone()), size, seed());
+    let frame = crate::common::frame_of(Arc::new(scene.clone()), size, seed());
     (0..size.element_product())
         .into_par_iter()
         .map(|i| {

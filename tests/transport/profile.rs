@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::common::{build, with_strategy};
 use flambeau::math::Ray;
 use flambeau::transport::{
-    Frame, Scene,
+    PreparedFrame, Scene,
     profile::{Profile, ProfileRow},
     strategy::{Advanced, Strategy},
 };
@@ -19,10 +19,10 @@ fn along_y() -> Ray {
 }
 
 /// With the probes, whether they pay or not.
-fn frame(scene: &Scene) -> Frame {
+fn frame(scene: &Scene) -> PreparedFrame {
     let advanced = Advanced { share_learning: false, ..scene.strategy.advanced };
     let strategy = Strategy { advanced, ..scene.strategy };
-    Frame::new(Arc::new(with_strategy(scene, strategy)), SIZE, 0)
+    crate::common::frame_of(Arc::new(with_strategy(scene, strategy)), SIZE, 0)
 }
 
 fn profile(scene: &Scene) -> Profile {

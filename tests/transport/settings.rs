@@ -3,7 +3,7 @@
 use crate::common::{Estimate, Z_LIMIT, build, every_setting, framed, full_name, with_strategy};
 use flambeau::{
     render::{Film, estimate::PixelEstimate},
-    transport::{PathSample, PixelSampler, Scene, strategy::Preset},
+    transport::{PathSample, Scene, strategy::Preset},
 };
 use glam::UVec2;
 use rayon::prelude::*;

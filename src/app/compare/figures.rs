@@ -1,5 +1,5 @@
-//! Figures of the picture, or of A and B, in tables: of all of it, against the reference, of a
-//! region.
+//! Figures of the picture, or of A and B, in tables: of the whole picture, against the reference,
+//! of a region.
 
 use egui::{Grid, RichText, Ui};
 
@@ -53,7 +53,7 @@ pub fn of_sides(sides: &[SideFigures]) -> Vec<Column> {
     };
     vec![
         column("spp", "Samples per pixel.", |side| rounded(side.samples_per_pixel, 3)),
-        column("CPU time", "Time of all sampling threads together.", |side| {
+        column("CPU time", "CPU time of all render threads together.", |side| {
             format!("{} s", rounded(side.cpu_seconds, 3))
         }),
         noise(sides),
@@ -61,7 +61,7 @@ pub fn of_sides(sides: &[SideFigures]) -> Vec<Column> {
 }
 
 fn noise(sides: &[SideFigures]) -> Column {
-    let help = "The standard error of the picture relative to its brightness.";
+    let help = "The relative standard error of the picture.";
     Column { heading: "noise", help, cells: sides.iter().map(noise_with_error).collect() }
 }
 
@@ -84,10 +84,11 @@ pub fn of_errors(errors: &[Errors], area: Option<Area>) -> Vec<Column> {
         cells: errors.iter().map(|errors| rounded(measure.mean(errors, area), 3)).collect(),
     };
     vec![
-        column(Measure::RelMse, "The relative mean squared error, in linear light."),
+        column(Measure::RelMse, "The relative mean squared error (relMSE), in linear light."),
         column(
             Measure::Flip,
-            "What somebody notices who flips between the displayed pictures: 0 nothing, 1 all.",
+            "The difference one perceives when flipping between the displayed pictures (FLIP): 0 \
+             is none, 1 the largest.",
         ),
     ]
 }
@@ -114,9 +115,9 @@ pub fn table(corner: &str, names: &[&str], columns: &[Column]) -> export::Figure
     }
 }
 
-/// The title of a region.
+/// The title of the figures of a region.
 pub fn region_title(area: &Area) -> String {
-    format!("Rectangle of {} × {} pixels", area.size.x, area.size.y)
+    format!("Region of {} × {} pixels", area.size.x, area.size.y)
 }
 
 /// The names of the rows.
@@ -175,7 +176,7 @@ fn over_time(ui: &mut Ui, reference: &mut MeasuredReference, noise: Option<&[Noi
     if all.len() > 1 {
         let choices: Vec<(&str, &str)> =
             all.iter().map(|plotted| (plotted.name(), plotted.help())).collect();
-        let help = "What is plotted over the time spent.";
+        let help = "The quantity plotted over CPU time.";
         if let Some(index) =
             row(ui, "Over time", help, |ui| segments(ui, &choices, Some(place))).inner
         {

@@ -64,17 +64,17 @@ impl Plotted {
     pub fn help(self) -> &'static str {
         match self {
             Self::Noise => {
-                "Noise (relative standard error) over CPU time. Both fall along the dotted slope: \
+                "Noise (relative standard error) over CPU time. It falls along the dotted slope: \
                  half the noise takes four times the time. The lower line is the better strategy."
             }
             Self::Error(Measure::RelMse) => {
-                "Relative squared error over CPU time. Noise falls along the dotted slope: half the \
-                 error takes twice the time. A line that bends away from it is biased, or has come \
-                 to the noise of the reference."
+                "Relative squared error over CPU time. Noise falls along the dotted slope: half \
+                 the error takes twice the time. A line that levels off is biased, or has reached \
+                 the noise of the reference."
             }
             Self::Error(Measure::Flip) => {
-                "FLIP over CPU time: what somebody notices who flips between the displayed picture \
-                 and the reference."
+                "FLIP over CPU time: the difference one perceives when flipping between the \
+                 displayed picture and the reference."
             }
         }
     }

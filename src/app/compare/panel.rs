@@ -37,7 +37,7 @@ pub fn sides(ui: &mut Ui, panel: &mut ComparePanel<'_>) {
     };
     let names =
         [Side::A, Side::B].map(|side| name(side, &panel.editor.document, panel.second_side));
-    let help = "The side that toggles and choices act on.";
+    let help = "The side that toggles and advanced settings act on.";
     let choices = [(names[0].as_str(), help), (names[1].as_str(), help)];
     let chosen = usize::from(compared.active == Side::B);
     let clicked = row(ui, "Edited side", help, |ui| segments(ui, &choices, Some(chosen))).inner;
@@ -45,7 +45,7 @@ pub fn sides(ui: &mut Ui, panel: &mut ComparePanel<'_>) {
         panel.commands.push(Command::SwitchSide);
     }
     if let Some(text) = bias(&panel.editor.document, panel.second_side) {
-        let help = "Ray marching is on there: its picture will never be quite right.";
+        let help = "Ray marching is on: the picture converges to a slightly different result.";
         ui.label(RichText::new(text).color(color::WARNING)).on_hover_text(help);
     }
     shares(ui, panel);
@@ -125,21 +125,21 @@ pub fn bias(document: &Document, second_side: &SecondSide) -> Option<&'static st
 fn shares(ui: &mut Ui, panel: &mut ComparePanel<'_>) {
     let Some(compared) = &mut panel.editor.document.compared else { return };
     let choices = [
-        ("Time", "Both sides get the same CPU time: what is the picture worth after so long?"),
-        ("Samples", "Both sides get the same samples: what is a sample worth?"),
+        ("Time", "Both sides get the same CPU time: which is less noisy after the same time?"),
+        ("Samples", "Both sides get the same number of samples: which is less noisy per sample?"),
     ];
     let chosen = usize::from(compared.share == Share::Samples);
-    let help = "What both sides get equal shares of.";
+    let help = "Whether both sides get equal CPU time or equal samples.";
     let clicked = row(ui, "Equal", help, |ui| segments(ui, &choices, Some(chosen))).inner;
     let mut edit = None;
     if let Some(index) = clicked {
         compared.share = [Share::CpuTime, Share::Samples][index];
         edit = Some("equal shares");
     }
-    let help = "B draws other random numbers than A. Without, noise that both share hides in their \
-                difference.";
-    if ui.checkbox(&mut compared.own_seed, "Own seed for B").on_hover_text(help).changed() {
-        edit = Some("own seed");
+    let help = "B uses other random numbers than A. With the same seed, noise that both sides \
+                share cancels in the difference.";
+    if ui.checkbox(&mut compared.own_seed, "Different seed for B").on_hover_text(help).changed() {
+        edit = Some("seed for B");
     }
     if let Some(name) = edit {
         panel.editor.name_edit(name);
@@ -164,19 +164,21 @@ pub fn layouts(ui: &mut Ui, layout: &mut CompareLayout, (kinds, of_two): (&[Comp
 fn in_words(kind: CompareLayout, of_two: bool) -> (&'static str, String) {
     let flip = format!(" Hold {} to see the other side.", FLIP_KEY.name());
     match kind {
-        CompareLayout::Wipe if !of_two => ("Picture", "The picture itself.".to_owned()),
+        CompareLayout::Wipe if !of_two => ("Picture", "The picture.".to_owned()),
         CompareLayout::Wipe => {
-            ("Wipe", format!("A left of the divider, B right of it; drag it.{flip}"))
+            ("Wipe", format!("A left of the divider, B right of it. Drag the divider.{flip}"))
         }
-        CompareLayout::Beside => {
-            ("Side by side", format!("A and B beside each other; zoom and moves go to both.{flip}"))
-        }
+        CompareLayout::Beside => (
+            "Side by side",
+            format!("A and B next to each other. Zoom and camera moves apply to both.{flip}"),
+        ),
         CompareLayout::Difference(_) => (
             "Difference",
-            "Where and how A and B differ: nothing but noise, if both are right.".to_owned(),
+            "Where and by how much A and B differ. Only noise should remain if neither is biased."
+                .to_owned(),
         ),
         CompareLayout::Noise(_) => {
-            ("Noise", "How noisy each pixel is: the standard error of its gray value.".to_owned())
+            ("Noise", "The noise of each pixel: the standard error of its luminance.".to_owned())
         }
         CompareLayout::Error(..) => {
             ("Error", "How far each pixel is from the reference.".to_owned())
@@ -191,9 +193,9 @@ fn finer(ui: &mut Ui, layout: &mut CompareLayout, of_two: bool) {
         CompareLayout::Difference(difference) => {
             let all = [Difference::Signed, Difference::Absolute, Difference::Relative];
             let choices = [
-                ("Signed", "B - A: orange where B is brighter, blue where it is darker."),
-                ("Absolute", "How far B is from A."),
-                ("Relative", "How far B is from A, relative to how bright they are."),
+                ("Signed", "B − A: orange where B is brighter, blue where it is darker."),
+                ("Absolute", "How much B differs from A."),
+                ("Relative", "How much B differs from A, relative to their brightness."),
             ];
             pick(ui, difference, all, choices);
         }
@@ -202,14 +204,22 @@ fn finer(ui: &mut Ui, layout: &mut CompareLayout, of_two: bool) {
             let choices = [
                 ("A", "The noise of A."),
                 ("B", "The noise of B."),
-                ("B / A", "The noise of B over that of A: blue where B is less noisy."),
+                ("B / A", "The noise of B divided by the noise of A: blue where B is less noisy."),
             ];
             pick(ui, noise, all, choices);
         }
         CompareLayout::Error(measure, side) => {
             let choices = [
-                ("Squared error", "In linear light, relative to the reference squared: relMSE."),
-                ("FLIP map", "What somebody notices who flips between the displayed pictures."),
+                (
+                    "Squared error",
+                    "The squared error in linear light, relative to the reference squared \
+                     (relMSE).",
+                ),
+                (
+                    "FLIP map",
+                    "The difference one perceives when flipping between the displayed pictures \
+                     (FLIP).",
+                ),
             ];
             pick(ui, measure, Measure::ALL, choices);
             if of_two {
@@ -236,15 +246,15 @@ fn pick<T: Copy + PartialEq, const N: usize>(
 /// Says which side is faster, and whether they show the same picture; `biased` says which ones are.
 pub fn verdict(ui: &mut Ui, comparison: Option<&Comparison>, biased: [bool; 2]) {
     let Some(comparison) = comparison else {
-        ui.label(RichText::new("Waiting for both sides …").color(color::TEXT_DIM));
+        ui.label(RichText::new("Waiting for both sides…").color(color::TEXT_DIM));
         return;
     };
     ui.label(RichText::new(comparison.sentence()).color(color::TEXT_STRONG)).on_hover_text(
-        "From variance times CPU time of both sides. The less is known, the fewer digits.",
+        "Computed from variance times CPU time of both sides, with as many digits as are certain.",
     );
     if let Some(text) = disagreement(comparison, biased) {
-        let help = "A difference stands out from the noise that chance would bring once in a \
-                    thousand comparisons. Only ray marching should do that.";
+        let help = "A and B differ by more than noise explains; noise alone would do so once in a \
+                    thousand comparisons. Only ray marching should cause this.";
         ui.label(RichText::new(text).color(color::WARNING)).on_hover_text(help);
     }
 }

@@ -1,4 +1,4 @@
-//! Rows under the picture: the rectangle and the reference, with what is known of them.
+//! Rows under the picture: the region and the reference, with their figures.
 
 use std::sync::Arc;
 
@@ -95,7 +95,7 @@ fn view_row(
     ui.horizontal_wrapped(row).inner
 }
 
-/// Shows the rectangle on pictures of `size` and what is known of it; `biased` says which sides are.
+/// Shows the region on pictures of `size` and its figures; `biased` says which sides are.
 fn region(
     ui: &mut Ui,
     region: &mut PictureRegion,
@@ -103,26 +103,26 @@ fn region(
     (figures, errors, biased): (Option<&RegionFigures>, Option<&[Errors]>, [bool; 2]),
 ) {
     let Some(area) = region.area(size) else {
-        ui.label(RichText::new("Drag a rectangle over the picture.").color(color::ACCENT));
-        let help = "Put it into the middle, from where numbers move it.";
+        ui.label(RichText::new("Drag a region over the picture.").color(color::ACCENT));
+        let help = "Place it in the middle; numbers then move and size it.";
         if ui.button("Place it").on_hover_text(help).clicked() {
             region.set(Area { first: size / 3, size: size / 3 }, size);
         }
-        if ui.button("Cancel").on_hover_text("Draw none.  [Esc]").clicked() {
+        if ui.button("Cancel").on_hover_text("Measure no region.  [Esc]").clicked() {
             region.remove();
         }
         return;
     };
-    ui.label(RichText::new("Rectangle").color(color::TEXT_STRONG));
+    ui.label(RichText::new("Region").color(color::TEXT_STRONG));
     if let Some(area) = fields(ui, area, size) {
         region.set(area, size);
     }
-    if ui.button("Remove").on_hover_text("Take the rectangle away.  [Esc]").clicked() {
+    if ui.button("Remove").on_hover_text("Remove the region.  [Esc]").clicked() {
         region.remove();
     }
     let alone = Command::SamplesHere;
     let help = format!("{}  [{}]", alone.tooltip(), key_of(ui, alone));
-    ui.toggle_value(&mut region.is_alone, "Samples only here").on_hover_text(help);
+    ui.toggle_value(&mut region.is_alone, "Render region only").on_hover_text(help);
     let Some(figures) = figures else { return };
     match &figures.comparison {
         Some(comparison) => panel::verdict(ui, Some(comparison), biased),
@@ -137,10 +137,10 @@ fn fields(ui: &mut Ui, area: Area, size: UVec2) -> Option<Area> {
     let most = [size.x.saturating_sub(1), size.y.saturating_sub(1), room.x, room.y];
     let least = [0, 0, 1, 1];
     let words = [
-        ("Rectangle x", "Its first column."),
-        ("Rectangle y", "Its first row, 0 on top."),
-        ("Rectangle width", "Its width in pixels."),
-        ("Rectangle height", "Its height in pixels."),
+        ("Region x", "The first column of the region."),
+        ("Region y", "The first row of the region, 0 at the top."),
+        ("Region width", "The width of the region in pixels."),
+        ("Region height", "The height of the region in pixels."),
     ];
     let mut changed = false;
     for (index, (name, help)) in words.into_iter().enumerate() {
@@ -173,14 +173,15 @@ fn told(ui: &mut Ui, columns: &[Column]) {
 
 /// Says that a snapshot of `size` and the live picture have different sizes.
 fn other_size(ui: &mut Ui, size: UVec2) -> Option<Asked> {
-    let text = format!("The snapshot has {} × {} pixels, the live picture others.", size.x, size.y);
+    let text =
+        format!("The snapshot has {} × {} pixels, the live picture another size.", size.x, size.y);
     ui.label(RichText::new(text).color(color::WARNING));
     take_size(ui, size)
 }
 
 fn take_size(ui: &mut Ui, size: UVec2) -> Option<Asked> {
-    let help = "Render the picture at that size; the film keeps it.";
-    let clicked = ui.button("Take its size").on_hover_text(help).clicked();
+    let help = "Set the render size to that size.";
+    let clicked = ui.button("Use its size").on_hover_text(help).clicked();
     clicked.then_some(Asked::Size(size))
 }
 
@@ -193,7 +194,7 @@ fn reference(
     let mut asked = None;
     ui.label(RichText::new("Reference").color(color::TEXT_STRONG));
     let Some(loaded) = reference.loaded() else {
-        ui.label(RichText::new("Loading …").color(color::ACCENT));
+        ui.label(RichText::new("Loading…").color(color::ACCENT));
         return None;
     };
     let of = loaded.reference.size();
@@ -205,19 +206,19 @@ fn reference(
     }
     if reference.is_of_another_size(size) {
         let text =
-            format!("It has {} × {} pixels and the picture {} × {}.", of.x, of.y, size.x, size.y);
+            format!("It has {} × {} pixels, the picture {} × {}.", of.x, of.y, size.x, size.y);
         ui.label(RichText::new(text).color(color::WARNING));
         return take_size(ui, of).or(asked);
     }
     if let Some(doubt) = loaded.doubt(settings) {
-        let text = format!("Errors say little: {doubt}.");
+        let text = format!("Errors mean little: {doubt}.");
         ui.label(RichText::new(text).color(color::WARNING))
-            .on_hover_text("The reference is known to show something else than this picture.");
+            .on_hover_text("The reference does not show what this picture shows.");
     }
     match reference.errors() {
         Some(errors) => told(ui, &of_errors(errors, None)),
         None => {
-            ui.label(RichText::new("Measuring …").color(color::TEXT_DIM));
+            ui.label(RichText::new("Measuring…").color(color::TEXT_DIM));
         }
     }
     asked

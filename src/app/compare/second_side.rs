@@ -16,7 +16,7 @@ use crate::app::picture::look::Look;
 use crate::app::picture::viewport::Shown;
 use crate::error::Result;
 use crate::render::compare::{Comparison, NoiseHistory};
-use crate::render::session::{Seat, Sharing};
+use crate::render::session::{Sharing, TurnToken};
 use crate::render::{Area, Layer, Picture};
 
 /// The key that shows the other side while it is held.
@@ -108,7 +108,7 @@ pub struct SecondSide {
     /// The comparison of the last frame.
     last: Option<Compared>,
     /// The tokens of the two sessions while there are two.
-    seats: [Seat; 2],
+    seats: [TurnToken; 2],
     threads: Option<usize>,
     /// How both are shown.
     pub layout: CompareLayout,
@@ -144,7 +144,7 @@ impl SecondSide {
             second_render: None,
             stored: None,
             last: None,
-            seats: Sharing::seats(),
+            seats: Sharing::tokens(),
             threads,
             layout: CompareLayout::default(),
             divider: 0.5,
@@ -246,8 +246,8 @@ impl SecondSide {
             let wake = ctx.clone();
             let second_render =
                 engine.second_render(self.threads, move || wake.request_repaint())?;
-            second_render.session().take_seat(Some(self.seats[1].clone()));
-            engine.session().take_seat(Some(self.seats[0].clone()));
+            second_render.session().take_turns_by(Some(self.seats[1].clone()));
+            engine.session().take_turns_by(Some(self.seats[0].clone()));
             self.second_render = Some(second_render);
         }
         self.seats[0].set_share(compared.share);
@@ -279,7 +279,7 @@ impl SecondSide {
         if edited && second_render.renders(&document.settings) {
             std::mem::swap(engine, &mut second_render);
         }
-        engine.session().take_seat(None);
+        engine.session().take_turns_by(None);
     }
 
     fn update_map(&mut self, ctx: &Context, engine: &LiveRender) {

@@ -34,10 +34,10 @@ impl Legend {
     /// The legend of a layer of numbers.
     pub fn of_layer(layer: Layer, scale: Scale) -> Self {
         let (title, note) = match layer {
-            Layer::Depth => ("Depth, length", "Black: nothing is met"),
-            Layer::Noise => ("Standard error, gray", "Black: none, or not known"),
-            Layer::Steps => ("Tracking steps per sample", "Black: no steps at all"),
-            Layer::Samples => ("Samples", "Of each pixel, so far"),
+            Layer::Depth => ("Depth, length", "Black: nothing hit"),
+            Layer::Noise => ("Noise (luminance)", "Black: none, or unknown"),
+            Layer::Steps => ("Tracking steps per sample", "Black: no steps"),
+            Layer::Samples => ("Samples", "Per pixel, so far"),
             other => (other.name(), ""),
         };
         Self { title, colors: Some(ColorKey::Ramp(scale)), note: note.to_owned() }
@@ -45,7 +45,7 @@ impl Legend {
 
     /// The legend of false color.
     pub fn of_stops() -> Self {
-        let note = "Green: middle gray, as exposed".to_owned();
+        let note = "Green: middle gray, with exposure".to_owned();
         Self { title: "Stops from middle gray", colors: Some(ColorKey::Stops), note }
     }
 
@@ -53,22 +53,24 @@ impl Legend {
     pub fn of_map(kind: MapKind, colors: ColorKey) -> Self {
         let (title, note) = match kind {
             MapKind::Difference(Difference::Signed) => {
-                ("B - A, gray", "Blue: B is darker, orange: brighter")
+                ("B − A (luminance)", "Blue: B is darker, orange: B is brighter")
             }
-            MapKind::Difference(Difference::Absolute) => ("|B - A|, gray", "Black: no difference"),
+            MapKind::Difference(Difference::Absolute) => {
+                ("|B − A| (luminance)", "Black: no difference")
+            }
             MapKind::Difference(Difference::Relative) => {
-                ("|B - A|, relative, gray", "Black: no difference")
+                ("|B − A|, relative (luminance)", "Black: no difference")
             }
-            MapKind::Noise(Noise::Of(Side::A)) => ("Standard error of A, gray", "Black: not known"),
-            MapKind::Noise(Noise::Of(Side::B)) => ("Standard error of B, gray", "Black: not known"),
+            MapKind::Noise(Noise::Of(Side::A)) => ("Noise of A (luminance)", "Black: unknown"),
+            MapKind::Noise(Noise::Of(Side::B)) => ("Noise of B (luminance)", "Black: unknown"),
             MapKind::Noise(Noise::Ratio) => {
-                ("Noise of B over that of A", "Blue: B is less noisy, orange: more")
+                ("Noise of B / noise of A", "Blue: B is less noisy, orange: B is noisier")
             }
             MapKind::Error(measure, side) => (
                 error_title(measure, side),
                 match measure {
                     Measure::RelMse => "Black: no error. The mean is relMSE",
-                    Measure::Flip => "0: not seen, 1: green in place of blue",
+                    Measure::Flip => "0: invisible, 1: like green instead of blue",
                 },
             ),
         };
@@ -78,10 +80,10 @@ impl Legend {
     /// The legend of the cells over the picture.
     pub fn of_cells(value: CellValue, cells: &Cells) -> Self {
         let (title, none, what) = match value {
-            CellValue::Majorant => ("Majorant, 1/length", "No volume here has borders.", "cell"),
-            CellValue::Energy => ("Emitted power per cell", "No volume here emits light.", "cell"),
+            CellValue::Majorant => ("Majorant, 1/length", "No volume has cells.", "cell"),
+            CellValue::Energy => ("Emitted power per cell", "No volume emits light.", "cell"),
             CellValue::Probes => {
-                ("Scattered light, radiance/length", "No probe here has light.", "probe")
+                ("Scattered light, radiance/length", "No probe receives light.", "probe")
             }
         };
         let (shown, total) = (cells.strongest.len(), cells.total);
@@ -97,9 +99,9 @@ impl Legend {
 
 fn error_title(measure: Measure, side: Option<Side>) -> &'static str {
     match (measure, side) {
-        (Measure::RelMse, None) => "Squared error, relative",
-        (Measure::RelMse, Some(Side::A)) => "Squared error of A, relative",
-        (Measure::RelMse, Some(Side::B)) => "Squared error of B, relative",
+        (Measure::RelMse, None) => "Relative squared error",
+        (Measure::RelMse, Some(Side::A)) => "Relative squared error of A",
+        (Measure::RelMse, Some(Side::B)) => "Relative squared error of B",
         (Measure::Flip, None) => "FLIP error",
         (Measure::Flip, Some(Side::A)) => "FLIP error of A",
         (Measure::Flip, Some(Side::B)) => "FLIP error of B",

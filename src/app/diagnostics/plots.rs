@@ -27,8 +27,8 @@ pub fn show(ui: &mut Ui, rows: &[ProfileRow], at: f32) -> Option<f32> {
         }
     });
     let peak = rows.iter().map(|row| row.emission).fold(0.0, f32::max);
-    let axes = ["Distance from the camera, lengths", "share"];
-    let shares = plot(ui, "Shares along the ray", axes, at, |plot| {
+    let axes = ["Distance from the camera", "fraction"];
+    let shares = plot(ui, "Fractions along the ray", axes, at, |plot| {
         for curve in &SHARES {
             let scale = if curve.unit.is_empty() || peak <= 0.0 { 1.0 } else { 1.0 / peak };
             plot.line(line(curve, rows, scale));

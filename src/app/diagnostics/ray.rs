@@ -1,4 +1,4 @@
-//! The ray of a pixel, looked into: what lies along it and how distances are drawn there.
+//! The ray inspector: the medium along the ray of a pixel, and the pdfs of distances there.
 
 use std::sync::Arc;
 
@@ -12,9 +12,10 @@ use crate::app::jobs::live_render::LiveRender;
 use crate::app::picture::view::View;
 use crate::app::ui::theme::{color, space};
 use crate::app::ui::widgets::significant;
+use crate::error::NO_PROGRESS;
 use crate::transport::probes::Probes;
 use crate::transport::profile::{Profile, ProfileRow};
-use crate::transport::{Frame, Scene};
+use crate::transport::{Frame, PreparedFrame, Scene};
 
 /// Rows of the table behind the curves.
 const ROWS: u32 = 300;
@@ -47,21 +48,26 @@ impl RayScene {
     }
 
     /// Looks into the ray; `known` is the frame of the same picture, if there is one.
-    fn found(&self, known: Option<Arc<Frame>>) -> Found {
+    fn found(&self, known: Option<Arc<PreparedFrame>>) -> Option<Found> {
         let Self { scene, probes, size, .. } = self;
-        let frame = known.unwrap_or_else(|| {
-            Arc::new(Frame::with_probes(scene.clone(), *size, 0, probes.clone()))
-        });
+        let make = || {
+            let frame = Frame::with_probes(scene.clone(), *size, 0, probes.clone());
+            frame.prepared(NO_PROGRESS)
+        };
+        let frame = match known {
+            Some(frame) => frame,
+            None => Arc::new(make().ok()?),
+        };
         let ray = scene.camera.ray(*size, self.pixel, Vec2::splat(0.5));
         let profile = Profile::along(&frame, &ray, ROWS);
-        Found { frame, profile }
+        Some(Found { frame, profile })
     }
 }
 
 /// The findings along a ray.
 struct Found {
     /// Kept for the next ray of the same picture: what pays in it takes a while to find out.
-    frame: Arc<Frame>,
+    frame: Arc<PreparedFrame>,
     /// None where the ray meets no medium.
     profile: Option<Profile>,
 }
@@ -70,7 +76,7 @@ struct Found {
 pub struct Inspector {
     /// Where in the picture, in shares of its sides.
     picked: Option<Vec2>,
-    profile: Background<RayScene, Found>,
+    profile: Background<RayScene, Option<Found>>,
     /// The distance whose values are read.
     at: Option<f32>,
 }
@@ -96,7 +102,10 @@ impl Inspector {
         });
         let known =
             source.as_ref().zip(self.profile.done()).and_then(|(source, (other, found))| {
-                source.same_picture(other).then(|| found.frame.clone())
+                found
+                    .as_ref()
+                    .filter(|_| source.same_picture(other))
+                    .map(|found| found.frame.clone())
             });
         let (make, wake) = (move |source: &RayScene| source.found(known), ctx.clone());
         self.profile.update(source, RayScene::same, make, move || wake.request_repaint());
@@ -129,19 +138,19 @@ impl Inspector {
     }
 
     fn contents(&mut self, ui: &mut Ui) {
-        let Some((source, Found { profile, .. })) = self.profile.done() else {
-            ui.label("Looking …");
+        let Some((source, Some(Found { profile, .. }))) = self.profile.done() else {
+            ui.label("Measuring the ray…");
             return;
         };
         let UVec2 { x, y } = source.pixel;
         let Some(profile) = profile else {
-            ui.label(format!("Pixel {x}, {y}: this ray meets no medium."));
+            ui.label(format!("Pixel {x}, {y}: no medium along this ray."));
             return;
         };
         let depth = significant(f64::from(profile.optical_depth));
         let guided = match profile {
             Profile { guided: false, .. } => ", no probes",
-            Profile { flights: 0.0, .. } => ", probes not asked: they don't pay in this picture",
+            Profile { flights: 0.0, .. } => ", probes switched off automatically",
             _ => "",
         };
         ui.label(format!("Pixel {x}, {y}: optical depth {depth}{guided}"));

@@ -145,7 +145,7 @@ fn describe(purpose: Purpose, suggested: &Path) -> rfd::FileDialog {
                 .add_filter("All files", &["*"]);
         }
         Purpose::Reference => {
-            return dialog.add_filter("Pictures without noise", &["exr", "npy"]);
+            return dialog.add_filter("Converged pictures", &["exr", "npy"]);
         }
         Purpose::SaveExr => dialog.add_filter("OpenEXR", &["exr"]),
         Purpose::SavePng | Purpose::SaveComparison => dialog.add_filter("PNG", &["png"]),

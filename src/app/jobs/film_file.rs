@@ -11,7 +11,7 @@ use crate::scene::{self, Settings};
 /// The film, once the session has copied it; `path` is what it is wanted for.
 pub fn receive(path: &Path, film: &mpsc::Receiver<Film>) -> Result<Film> {
     film.recv().map_err(|_| {
-        let reason = "there is no picture to save, or too little memory for a copy of it";
+        let reason = "there is no picture to save, or not enough memory to copy it";
         Error::invalid(path.display().to_string(), "", reason)
     })
 }

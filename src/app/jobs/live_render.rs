@@ -383,8 +383,8 @@ impl LiveRender {
         let start = self.next_start(size, news);
         let resume = self.resume.take();
         if resume.as_ref().is_some_and(|resume| resume.film.size() != size) {
-            let text = "The graphics card cannot show a picture of this size, so that it cannot be \
-                        continued: it is rendered anew, smaller.";
+            let text = "The graphics card cannot display a picture of this size, so it cannot be \
+                        resumed. It is rendered from the start, smaller.";
             news.push(News::Failed(text.to_owned()));
         }
         let resume = resume.filter(|resume| resume.film.size() == size);

@@ -8,14 +8,16 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::built::{BuiltScene, RenderStart};
 use super::mailbox::Mailbox;
-use crate::error::{Error, Result};
+use crate::error::{Error, Progress, Result};
 use crate::render::pool::{Pool, Priority};
 use crate::render::{Request, Resume, Session};
+use crate::scene::Settings;
+use crate::scene::settings::CameraSettings;
 use crate::transport::probes::Probes;
-use crate::transport::{Frame, PixelSampler, Scene};
+use crate::transport::{Frame, PixelSampler, Scene, prepare};
 
-/// Places the probes of a scene unless told to stop.
-type PlaceProbes = dyn Fn(&Scene, &(dyn Fn() -> bool + Sync)) -> Option<Probes> + Send + Sync;
+/// Places the probes of a scene unless they are given up on the way.
+type PlaceProbes = dyn Fn(&Scene, Progress) -> Result<Option<Probes>> + Send + Sync;
 
 /// The handle of the thread. Dropping it stops what is being placed and ends the thread.
 pub struct ProbePlacer {
@@ -53,13 +55,16 @@ impl ProbePlacer {
     /// When the system refuses to start threads.
     pub fn new(session: Arc<Session>, threads: Option<usize>) -> Result<Self> {
         let pool = Pool::new(threads, Priority::Background)?;
-        Self::with(session, move |scene, stop| pool.install(|| Probes::unless(scene, stop)))
+        let place = move |scene: &Scene, progress: Progress| {
+            pool.install(|| prepare::probes(scene, progress))
+        };
+        Self::with(session, place)
     }
 
     /// A placer that places probes by `place`.
     fn with(
         session: Arc<Session>,
-        place: impl Fn(&Scene, &(dyn Fn() -> bool + Sync)) -> Option<Probes> + Send + Sync + 'static,
+        place: impl Fn(&Scene, Progress) -> Result<Option<Probes>> + Send + Sync + 'static,
     ) -> Result<Self> {
         let shared = Arc::new(Shared {
             state: Mutex::default(),
@@ -155,11 +160,12 @@ impl PlacerState {
 
 fn work(shared: &Shared, session: &Session, place: &PlaceProbes) {
     while let Some(PlaceRequest { built, generation }) = shared.requests.take() {
-        let stop = || shared.generation.load(Ordering::Relaxed) != generation;
+        let go_on = |_: f32| shared.generation.load(Ordering::Relaxed) == generation;
         let scene = built.scene.clone();
-        // Should it fail, the render goes on without; its thread has reported why.
-        let probes = catch_unwind(AssertUnwindSafe(|| place(&scene, &stop)));
-        let probes = probes.ok().flatten().map(Arc::new);
+        // Should it fail, the render goes on without; its thread has reported why. Probes that were
+        // given up are not taken in.
+        let probes = catch_unwind(AssertUnwindSafe(|| place(&scene, &go_on)));
+        let probes = probes.ok().and_then(Result::ok).flatten().map(Arc::new);
         if let Some((built, start)) = shared.take_in(built, generation, probes.as_ref()) {
             let sampler = probes.map(|probes| sampler(&built, start, Some(probes)));
             session.improve(start.generation, sampler);
@@ -195,15 +201,20 @@ fn same(a: &BuiltScene, b: &BuiltScene) -> bool {
         && same_places(a, b)
 }
 
-/// Whether they would with the same strategy.
+/// Whether two scenes would have the same probes with the same strategy.
 fn same_places(a: &BuiltScene, b: &BuiltScene) -> bool {
-    let same_camera = || a.settings.camera.position == b.settings.camera.position;
-    a.settings.environment == b.settings.environment
-        && a.settings.path == b.settings.path
-        && a.settings.light == b.settings.light
-        && a.settings.surface == b.settings.surface
+    // All keys are named, so that a new one cannot leave stale probes. The film has no part in the
+    // probes, the volumes are compared as they were built, and the strategy by its recipe.
+    let Settings { camera, film: _, path, environment, volume: _, light, surface, strategy: _ } =
+        &a.settings;
+    // Where the camera looks does not matter.
+    let CameraSettings { position, target: _, up: _, fov_x: _ } = camera;
+    *environment == b.settings.environment
+        && *path == b.settings.path
+        && *light == b.settings.light
+        && *surface == b.settings.surface
         && a.scene.world.has_volumes_of(&b.scene.world)
-        && (!Probes::heed_camera(&b.scene) || same_camera())
+        && (!Probes::heed_camera(&b.scene) || *position == b.settings.camera.position)
 }
 
 #[cfg(test)]

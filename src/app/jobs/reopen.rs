@@ -32,7 +32,7 @@ pub fn is_snapshot(source: &str) -> bool {
 pub fn open(source: &str) -> Result<(Settings, Reopened)> {
     let path = Path::new(source);
     let Some(header) = read_info(path)?.header else {
-        let reason = "this EXR was not written by Flambeau, so there is no scene in it to open";
+        let reason = "this EXR was not written by Flambeau and contains no scene to open";
         return Err(Error::invalid(source, "", reason));
     };
     let name = path.file_name().unwrap_or_default().to_string_lossy();
@@ -40,9 +40,9 @@ pub fn open(source: &str) -> Result<(Settings, Reopened)> {
     let reopened = match samples(path, &name, &header, &settings) {
         Ok((film, warnings)) => {
             let spp = significant(samples_per_pixel(&film));
-            let mut text = format!("it goes on from {spp} spp.");
+            let mut text = format!("resumed from {spp} spp.");
             if lift_limit(&mut settings, &film) {
-                text.push_str(" The limit it had reached is lifted.");
+                text.push_str(" It had reached its max samples; the limit is now off.");
             }
             for warning in warnings {
                 text.push_str(&format!("\n{warning}."));
@@ -52,7 +52,7 @@ pub fn open(source: &str) -> Result<(Settings, Reopened)> {
             Reopened { resume, notice: Notice { level: Level::Done, text } }
         }
         Err(reason) => {
-            let text = format!("it cannot be continued and is rendered anew: {reason}.");
+            let text = format!("cannot be resumed and is rendered from the start: {reason}.");
             Reopened { resume: None, notice: Notice { level: Level::Failed, text } }
         }
     };
@@ -74,7 +74,7 @@ fn samples(
     }
     let Snapshot { film, .. } = read_snapshot(path).map_err(|error| error.to_string())?;
     if film.size().to_array() != settings.film.size {
-        return Err("its picture has another size than its scene says".to_owned());
+        return Err("its picture does not have the render size of its scene".to_owned());
     }
     Ok((film, compatibility.warnings))
 }
@@ -145,7 +145,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let (settings, reopened) = open(&write(folder.path(), 1)).unwrap();
         assert_eq!(settings.film.spp, 0);
-        assert!(reopened.resume.is_some() && reopened.notice.text.contains("lifted"));
+        assert!(reopened.resume.is_some() && reopened.notice.text.contains("the limit is now off"));
     }
 
     #[test]

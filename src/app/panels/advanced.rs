@@ -1,4 +1,4 @@
-//! The finer choices behind the toggles.
+//! The advanced settings behind the toggles.
 
 use egui::Ui;
 
@@ -7,7 +7,7 @@ use crate::app::ui::theme::space;
 use crate::app::ui::widgets::{Number, capitalized, choice, choice_but, key_help};
 use crate::transport::strategy::{Advanced, BoostMode, Strategy, Tracker};
 
-/// Shows them; what its toggle does not use is dimmed.
+/// Shows them. A setting that its toggle does not use is dimmed.
 pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
     let opened = panel.editor.opened().settings.strategy.advanced;
     let strategy = &mut panel.editor.document.settings.strategy;
@@ -23,8 +23,8 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
     walks(ui, strategy, &mut edit);
     let spread = &mut strategy.advanced.low_discrepancy;
     let help = key_help("strategy.advanced.low_discrepancy");
-    if ui.checkbox(spread, "Spread samples").on_hover_text(help).changed() {
-        edit = Some("spread samples");
+    if ui.checkbox(spread, "Low-discrepancy samples").on_hover_text(help).changed() {
+        edit = Some("low-discrepancy samples");
     }
     if let Some(name) = edit {
         panel.editor.name_edit(name);
@@ -82,14 +82,14 @@ fn fire_as_light(ui: &mut Ui, strategy: &mut Strategy, edit: &mut Option<&'stati
     let advanced = &mut strategy.advanced;
     ui.add_enabled_ui(strategy.nee, |ui| {
         let evaluation = &mut advanced.nee_evaluation;
-        if choice(ui, "Look at fire", "strategy.advanced.nee_evaluation", evaluation) {
-            *edit = Some("look at fire");
+        if choice(ui, "Fire sampling", "strategy.advanced.nee_evaluation", evaluation) {
+            *edit = Some("fire sampling");
         }
     });
     // Not only for fire: lamps are chosen this way too.
     let selection = &mut advanced.light_selection;
-    if choice(ui, "Choose lights", "strategy.advanced.light_selection", selection) {
-        *edit = Some("choose lights");
+    if choice(ui, "Light selection", "strategy.advanced.light_selection", selection) {
+        *edit = Some("light selection");
     }
 }
 
@@ -103,12 +103,12 @@ fn guided_scattering(
     let guides = strategy.probe_mis && !strategy.is_biased();
     let advanced = &mut strategy.advanced;
     ui.add_enabled_ui(guides, |ui| {
-        if choice(ui, "Distance", "strategy.advanced.distance", &mut advanced.distance) {
-            *edit = Some("distance");
+        if choice(ui, "Distance sampling", "strategy.advanced.distance", &mut advanced.distance) {
+            *edit = Some("distance sampling");
         }
         let (key, value) =
             ("strategy.advanced.scatter_probability", &mut advanced.scatter_probability);
-        if choice(ui, "Scatter more", key, value) {
+        if choice(ui, "Scatter probability", key, value) {
             *edit = Some("scatter probability");
         }
         let mut count = advanced.probe_count as f32;
@@ -117,18 +117,22 @@ fn guided_scattering(
             *edit = Some("probe count");
         }
         for (value, name, key) in [
-            (&mut advanced.probe_learning, "Learn", "strategy.advanced.probe_learning"),
-            (&mut advanced.share_learning, "Only what pays", "strategy.advanced.share_learning"),
-            (&mut advanced.equiangular, "Equal angles", "strategy.advanced.equiangular"),
+            (
+                &mut advanced.probe_learning,
+                "Learn indirect light",
+                "strategy.advanced.probe_learning",
+            ),
+            (&mut advanced.share_learning, "Adapt to the shot", "strategy.advanced.share_learning"),
+            (&mut advanced.equiangular, "Equiangular sampling", "strategy.advanced.equiangular"),
             (
                 &mut advanced.guide_directions,
                 "Guide directions",
                 "strategy.advanced.guide_directions",
             ),
-            (&mut advanced.guide_caustics, "Guide to metals", "strategy.advanced.guide_caustics"),
+            (&mut advanced.guide_caustics, "Guide caustics", "strategy.advanced.guide_caustics"),
             (
                 &mut advanced.guide_all_vertices,
-                "Guide bounces",
+                "Guide all bounces",
                 "strategy.advanced.guide_all_vertices",
             ),
         ] {
@@ -152,13 +156,13 @@ fn walks(ui: &mut Ui, strategy: &mut Strategy, edit: &mut Option<&'static str>) 
         *edit = Some("tracker");
     }
     if let Some(reason) = reason {
-        explain(ui, &format!("Not beside the present settings: {}.", capitalized(reason)));
+        explain(ui, &format!("Not available with these settings: {}.", capitalized(reason)));
     }
 }
 
 fn probe_count(opened: Advanced) -> Number<'static> {
     Number {
-        name: "Probes",
+        name: "Probe count",
         key: "strategy.advanced.probe_count",
         soft: 256.0..=65536.0,
         logarithmic: true,

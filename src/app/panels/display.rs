@@ -1,4 +1,5 @@
-//! How the picture is brought to the screen. Nothing here changes the render.
+//! The display transform: exposure, white balance, tone curve, channel and layer. Nothing here
+//! changes the render.
 
 use egui::Ui;
 
@@ -14,9 +15,12 @@ const STOPS: [f32; 2] = [-8.0, 8.0];
 const KELVIN: [f32; 2] = [1700.0, 15_000.0];
 
 const CURVES: [(ToneCurve, &str); 3] = [
-    (ToneCurve::Filmic, "Rolls bright fire off through yellow to white and keeps blacks deep."),
+    (
+        ToneCurve::Filmic,
+        "Rolls highlights off, fire through yellow to white, and keeps blacks deep.",
+    ),
     (ToneCurve::Agx, "Softer: bright colors fade to white early, as in Blender."),
-    (ToneCurve::Linear, "No curve: what is brighter than 1 clips."),
+    (ToneCurve::Linear, "No curve: values above 1 clip."),
 ];
 
 /// Shows the section.
@@ -56,15 +60,15 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
     });
 }
 
-const EXPOSURE_HELP: &str = "How bright the picture is shown, in stops: one more is twice as \
-                             bright. For display and PNG only; an EXR keeps the light as it is.";
+const EXPOSURE_HELP: &str = "Exposure of the display in stops: one stop more is twice as bright. \
+                             For display and PNG only; an EXR stays linear.";
 
-const WHITE_HELP: &str = "Color temperature of the light that is shown white. 6500 K leaves colors \
-                          as they are; 2500 K makes a torch white and daylight blue. For display and \
-                          PNG only.";
+const WHITE_HELP: &str = "Color temperature of the light that is displayed as white. 6500 K leaves \
+                          colors unchanged; 2500 K makes a torch white and daylight blue. For \
+                          display and PNG only.";
 
-const TINT_HELP: &str = "How green the light is that is shown white: more takes green out of the \
-                         picture, less takes magenta out. For display and PNG only.";
+const TINT_HELP: &str = "Green-magenta balance: higher values remove green, lower ones remove \
+                         magenta. For display and PNG only.";
 
 fn exposure(reset: Tone) -> Number<'static> {
     Number {
@@ -103,19 +107,19 @@ fn tint(reset: Tone) -> Number<'static> {
 fn curve(ui: &mut Ui, tone: &mut Tone) -> bool {
     let choices = CURVES.map(|(curve, help)| (curve.name(), help));
     let chosen = CURVES.iter().position(|(curve, _)| *curve == tone.curve);
-    let help = "From exposed light to what a screen can show. For display and PNG only.";
+    let help = "Maps exposed linear light to the range of a screen. For display and PNG only.";
     let clicked = row(ui, "Tone curve", help, |ui| segments(ui, &choices, chosen)).inner;
     let Some((curve, _)) = clicked.and_then(|index| CURVES.get(index)) else { return false };
     tone.curve = *curve;
     true
 }
 
-/// What takes the place of the picture.
+/// The layer that is shown.
 fn layer(ui: &mut Ui, wanted: &mut Option<Layer>) {
-    let help = "The picture, one part of its light, or what is known of its pixels. An EXR holds \
-                them all.";
+    let help = "The beauty pass, one component of its light, or data of its pixels. An EXR \
+                contains all layers.";
     row(ui, "Layer", help, |ui| {
-        let choice = |layer: Option<Layer>| (layer, layer.map_or("Picture", Layer::name), "");
+        let choice = |layer: Option<Layer>| (layer, layer.map_or("Beauty", Layer::name), "");
         let choices: Vec<_> =
             std::iter::once(None).chain(Layer::ALL.map(Some)).map(choice).collect();
         list(ui, ("Layer", help), wanted, &choices);
@@ -124,8 +128,8 @@ fn layer(ui: &mut Ui, wanted: &mut Option<Layer>) {
 
 /// Whether another channel was chosen.
 fn channel(ui: &mut Ui, tone: &mut Tone) -> bool {
-    let help = "All of the color, one channel as gray, or how many stops each pixel is from middle \
-                gray. For display and PNG only.";
+    let help = "Full color, one channel as gray, or false color for the stops from middle gray. \
+                For display and PNG only.";
     row(ui, "Show", help, |ui| {
         let choices = Channel::ALL.map(|channel| (channel, channel.name(), ""));
         list(ui, ("Show", help), &mut tone.channel, &choices)

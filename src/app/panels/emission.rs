@@ -1,4 +1,4 @@
-//! How a volume glows.
+//! The emission of a volume.
 
 use egui::Ui;
 
@@ -7,7 +7,7 @@ use crate::app::ui::widgets::{Number, color_rows, key_help, list, row, segments,
 use crate::scene::settings::{Color, EmissionMode, EmissionSettings, Normalize, VolumeSettings};
 use crate::scene::{GridDescription, Role, VoxelDescription};
 
-/// The hottest that the slider of the kelvin scale makes a grid.
+/// The highest temperature that the slider of the temperature scale reaches, in kelvin.
 const HOTTEST: f32 = 6000.0;
 
 /// Shows the rows; the name of the edit if anything changed.
@@ -21,7 +21,7 @@ pub fn show(
     let grid = volume.emission_grid().map(str::to_owned);
     if let Some(grid) = grid.as_ref().filter(|_| !grids.is_empty()) {
         let help = key_help("volume.N.emission.grid");
-        row(ui, "Glows by", &help, |ui| ui.label(grid));
+        row(ui, "Emission grid", &help, |ui| ui.label(grid));
     }
     let described = |described: &&GridDescription| Some(&described.name) == grid.as_ref();
     let voxels = grids.iter().find(described).and_then(|grid| grid.voxels);
@@ -30,9 +30,11 @@ pub fn show(
         EmissionMode::None => None,
         EmissionMode::Grid => of_grid(ui, emission, opened, voxels.as_ref()),
         EmissionMode::Constant => {
-            color_row(ui, "Glow", "value", &mut emission.value, opened.value())
+            color_row(ui, "Emission", "value", &mut emission.value, opened.value())
         }
-        EmissionMode::Source => color_row(ui, "Source", "le", &mut emission.le, opened.le()),
+        EmissionMode::Source => {
+            color_row(ui, "Source radiance", "le", &mut emission.le, opened.le())
+        }
         EmissionMode::Blackbody => blackbody(ui, emission, opened, voxels.as_ref()),
         EmissionMode::Ramp => ramp(ui, emission, opened, voxels.as_ref()),
     };
@@ -40,12 +42,12 @@ pub fn show(
 }
 
 const MODES: [(EmissionMode, &str, &str); 6] = [
-    (EmissionMode::None, "none", "It does not glow."),
-    (EmissionMode::Blackbody, "blackbody", "From a temperature, as a black body."),
-    (EmissionMode::Ramp, "color ramp", "From a grid through a color ramp."),
-    (EmissionMode::Grid, "grid", "Read from a grid, untouched by density and albedo."),
-    (EmissionMode::Constant, "constant", "The same all over the volume."),
-    (EmissionMode::Source, "source", "In proportion to the absorption."),
+    (EmissionMode::None, "none", "No emission."),
+    (EmissionMode::Blackbody, "blackbody", "Blackbody emission from a temperature grid."),
+    (EmissionMode::Ramp, "color ramp", "A grid mapped through a color ramp."),
+    (EmissionMode::Grid, "grid", "Read from a grid, independent of density and albedo."),
+    (EmissionMode::Constant, "constant", "The same everywhere in the volume."),
+    (EmissionMode::Source, "source", "Proportional to the absorption."),
 ];
 
 fn emission_mode(
@@ -88,10 +90,10 @@ fn of_grid(
         return edit;
     }
     let mut color = emission.color();
-    let tinted = tint(ui, "Emission tint", &key_help("volume.N.emission.color"), &mut color);
+    let tinted = tint(ui, "Emission color", &key_help("volume.N.emission.color"), &mut color);
     let change = tinted.then(|| {
         emission.color = Some(color);
-        "emission tint"
+        "emission color"
     });
     edit.or(change)
 }
@@ -114,20 +116,20 @@ fn ramp(
 fn times_density(ui: &mut Ui, emission: &mut EmissionSettings) -> Option<&'static str> {
     let mut on = emission.times_density();
     let help = key_help("volume.N.emission.times_density");
-    ui.checkbox(&mut on, "Scaled by density").on_hover_text(help).changed().then(|| {
+    ui.checkbox(&mut on, "Multiply emission by density").on_hover_text(help).changed().then(|| {
         emission.times_density = Some(on);
-        "glow times density"
+        "emission times density"
     })
 }
 
-/// What the range of the grid is in kelvin.
+/// Says what the range of the grid is in kelvin.
 fn kelvin_note(ui: &mut Ui, emission: &EmissionSettings, voxels: &VoxelDescription) {
     let kelvin = |value: f32| {
         let kelvin = (value - emission.kelvin_offset()) * emission.kelvin_scale();
         format!("{:.0}", kelvin.max(0.0))
     };
     let (low, high) = (kelvin(voxels.min), kelvin(voxels.max));
-    explain(ui, &format!("The grid goes from {low} to {high} kelvin."));
+    explain(ui, &format!("The grid covers {low} to {high} K."));
 }
 
 fn blackbody(
@@ -141,7 +143,7 @@ fn blackbody(
     let most = if highest > 0.0 { HOTTEST / highest } else { opened.kelvin_scale() * 4.0 };
     let mut scale = emission.kelvin_scale();
     let row_scale = Number {
-        name: "Kelvin scale",
+        name: "Temperature scale (K)",
         key: "volume.N.emission.kelvin_scale",
         soft: 0.0..=most.max(1.0),
         logarithmic: false,
@@ -150,12 +152,12 @@ fn blackbody(
     };
     if row_scale.show(ui, &mut scale) {
         emission.kelvin_scale = Some(scale);
-        edit = Some("kelvin scale");
+        edit = Some("temperature scale");
     }
     let mut offset = emission.kelvin_offset();
     let reach = (2000.0 / emission.kelvin_scale().max(1e-3)).max(1e-3);
     let row_offset = Number {
-        name: "Kelvin offset",
+        name: "Temperature offset",
         key: "volume.N.emission.kelvin_offset",
         soft: -reach..=reach,
         logarithmic: false,
@@ -164,7 +166,7 @@ fn blackbody(
     };
     if row_offset.show(ui, &mut offset) {
         emission.kelvin_offset = Some(offset);
-        edit = Some("kelvin offset");
+        edit = Some("temperature offset");
     }
     if let Some(voxels) = voxels {
         kelvin_note(ui, emission, voxels);
@@ -181,8 +183,11 @@ fn brightness(
 ) -> Option<&'static str> {
     let mut edit = None;
     let laws = [
-        ("Peak", "Every temperature equally bright; only its color changes."),
-        ("T⁴", "Brightness grows with the fourth power of the temperature, as in nature."),
+        ("Constant", "Every temperature is equally bright; only its color changes."),
+        (
+            "Physical (T⁴)",
+            "Brightness grows with the fourth power of the temperature, as a black body's does.",
+        ),
     ];
     let all = [Normalize::Peak, Normalize::T4];
     let chosen = all.iter().position(|law| *law == emission.normalize());
@@ -196,7 +201,7 @@ fn brightness(
     if emission.normalize() == Normalize::T4 {
         let mut reference = emission.reference_kelvin();
         let number = Number {
-            name: "Reference",
+            name: "Reference temperature",
             key: "volume.N.emission.reference_kelvin",
             soft: 500.0..=4000.0,
             logarithmic: false,
@@ -260,7 +265,7 @@ fn color_row(
         unit: "",
         reset: strength(reset),
     };
-    color_rows(ui, number, &mut present).then(|| {
+    color_rows(ui, number, "Emission color", &mut present).then(|| {
         *value = Some(present);
         name
     })

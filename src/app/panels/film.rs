@@ -1,4 +1,4 @@
-//! The size of the picture, its seed and where it ends.
+//! Render size, seed, and the limits on samples and bounces.
 
 use egui::{DragValue, Ui, vec2};
 use glam::UVec2;
@@ -12,28 +12,29 @@ use crate::scene::settings::FilmSettings;
 /// Shows the section. `window` is the size that the film takes from the window, `largest` the
 /// most that the graphics card can show a side.
 pub fn show(ui: &mut Ui, panel: &mut Panel<'_>, window: Option<UVec2>, largest: u32) {
-    section(ui, "Film", |ui| {
+    section(ui, "Render", |ui| {
         let opened = &panel.editor.opened().settings;
         let reset = (opened.film.seed, opened.film.spp, opened.path.max_scatters);
         let reset_size = opened.film.size;
         let document = &mut panel.editor.document;
         let mut edit = None;
         let choices = [
-            ("Window size", "The film always fills the window."),
-            ("Fixed", "The film keeps the size given here, as a render on the farm would."),
+            ("Window size", "Render at the size of the window."),
+            ("Fixed", "Render at the size given here, as on a render farm."),
         ];
         let chosen = usize::from(document.keep_size);
-        let clicked =
-            row(ui, "Size", &key_help("film.size"), |ui| segments(ui, &choices, Some(chosen)));
+        let clicked = row(ui, "Render size", &key_help("film.size"), |ui| {
+            segments(ui, &choices, Some(chosen))
+        });
         if let Some(choice) = clicked.inner {
             document.keep_size = choice == 1;
-            edit = Some("film size");
+            edit = Some("render size");
         }
         let film = &mut document.settings.film;
         let path = &mut document.settings.path;
         if document.keep_size {
             if fixed_size(ui, film, reset_size, largest) {
-                edit = Some("film size");
+                edit = Some("render size");
             }
         } else if let Some(size) = window {
             row(ui, "", "", |ui| ui.weak(format!("{} × {} pixels", size.x, size.y)));
@@ -43,28 +44,28 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>, window: Option<UVec2>, largest: 
             edit = Some("seed");
         }
         let stop = Whole {
-            name: "Stop at",
+            name: "Max samples",
             key: "film.spp",
-            none: Some("never"),
+            none: Some("off"),
             unit: " spp",
             reset: reset.1.into(),
         };
         let mut spp = u64::from(film.spp);
         if stop.show(ui, &mut spp) {
             film.spp = u32::try_from(spp).unwrap_or(u32::MAX);
-            edit = Some("samples per pixel");
+            edit = Some("max samples");
         }
         let bounces = Whole {
-            name: "Bounces",
+            name: "Max bounces",
             key: "path.max_scatters",
-            none: Some("unbounded"),
+            none: Some("no limit"),
             unit: "",
             reset: reset.2.into(),
         };
         let mut scatters = u64::from(path.max_scatters);
         if bounces.show(ui, &mut scatters) {
             path.max_scatters = u32::try_from(scatters).unwrap_or(u32::MAX);
-            edit = Some("bounces");
+            edit = Some("max bounces");
         }
         if let Some(name) = edit {
             panel.editor.name_edit(name);
@@ -75,10 +76,10 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>, window: Option<UVec2>, largest: 
 fn fixed_size(ui: &mut Ui, film: &mut FilmSettings, reset: [u32; 2], largest: u32) -> bool {
     let before = film.size;
     let [width, height] = reset;
-    let help = format!("{}\n\nDouble-click for {width} × {height}.", key_help("film.size"));
+    let help = format!("{}\n\nDouble-click to reset to {width} × {height}.", key_help("film.size"));
     ui.horizontal(|ui| {
         let label = row_label(ui, "Pixels", &help);
-        for (side, name) in film.size.iter_mut().zip(["Film width", "Film height"]) {
+        for (side, name) in film.size.iter_mut().zip(["Render width", "Render height"]) {
             let field = DragValue::new(side)
                 .range(1..=largest)
                 .custom_parser(finite)
@@ -118,7 +119,8 @@ impl Whole<'_> {
             _ => finite(text.trim().trim_end_matches(unit)),
         };
         let [low, high] = keys::find(key).map_or([0.0, f64::MAX], |key| key.limits);
-        let help = format!("{}\n\nDouble-click for {}.", key_help(key), words(reset as f64));
+        let help =
+            format!("{}\n\nDouble-click to reset to {}.", key_help(key), words(reset as f64));
         ui.horizontal(|ui| {
             let label = row_label(ui, name, &help);
             let field = DragValue::new(value)

@@ -25,7 +25,7 @@ pub fn show(
                 return;
             }
             let guessed = |role: Role, volume: &VolumeSettings| {
-                let about = if role == Role::Density { About::Density } else { About::Glow };
+                let about = if role == Role::Density { About::Density } else { About::Emission };
                 let note = notes.iter().find(|note| note.about == about)?;
                 let same = role.is_of(volume, &grid.name) && role.is_of(opened, &grid.name);
                 same.then_some(note)
@@ -33,7 +33,7 @@ pub fn show(
             let clicked = roles(ui, volume, grid, guessed);
             if let Some(role) = clicked {
                 take_or_give(role, volume, grid);
-                edit = Some("what a grid is for");
+                edit = Some("use of a grid");
             }
         });
         ui.add_space(space::TIGHT);
@@ -85,11 +85,11 @@ fn figures(ui: &mut Ui, voxels: &VoxelDescription) {
     let [low, high] = [voxels.min, voxels.max].map(|value| significant(f64::from(value)));
     Grid::new(ui.next_auto_id()).num_columns(3).spacing([14.0, 0.0]).show(ui, |ui| {
         ui.label(RichText::new(format!("{low} … {high}")).small().color(color::TEXT))
-            .on_hover_text("The lowest and the highest value in the grid.");
+            .on_hover_text("The smallest and the largest value of the grid.");
         ui.label(small(format!("{} voxels", count(voxels.active as f64))))
-            .on_hover_text("How many voxels hold a value.");
+            .on_hover_text("The number of active voxels.");
         ui.label(small(format!("{}B", count(voxels.memory_bytes as f64))))
-            .on_hover_text("The memory that they take.");
+            .on_hover_text("Their memory use.");
     });
 }
 
@@ -101,8 +101,8 @@ fn histogram(ui: &Ui, rect: Rect, grid: &GridDescription, voxels: &VoxelDescript
     histogram_bars(ui.painter(), rect.shrink(1.0), voxels, color::CURVE);
     let [low, high] = [voxels.min, voxels.max].map(|value| significant(f64::from(value)));
     response.on_hover_text(format!(
-        "How often each value occurs, from {low} on the left to {high} on the right. Heights go by \
-         the square root of the number of voxels."
+        "Histogram of the values, from {low} on the left to {high} on the right. Heights are the \
+         square root of the voxel counts."
     ));
 }
 
@@ -144,13 +144,13 @@ fn roles<'n>(
         let note = Role::ALL.into_iter().find_map(|role| guessed(role, volume));
         if let Some(note) = note {
             ui.add_space(space::TIGHT);
-            let help = format!("Guessed: {}. A click on another button mends it.", note.text);
+            let help = format!("Guessed: {}. Click another button to change it.", note.text);
             let text = RichText::new("guess").small().italics().color(color::WARNING);
             ui.label(text).on_hover_text(help);
         }
         if !Role::ALL.into_iter().any(|role| role.is_of(volume, &grid.name)) {
             ui.add_space(space::TIGHT);
-            let help = "Nothing is read from this grid. A click on a button says what it is for.";
+            let help = "This grid is not used. Click a button to use it.";
             ui.label(RichText::new("not used").small().color(color::TEXT_DIM)).on_hover_text(help);
         }
     });
@@ -159,13 +159,13 @@ fn roles<'n>(
 
 fn words(role: Role) -> (&'static str, &'static str) {
     match role {
-        Role::Density => ("Density", "This grid says how thick the smoke is."),
+        Role::Density => ("Density", "Use this grid as the smoke density."),
         Role::Temperature => {
-            ("Temperature", "This grid is a temperature, which glows as a black body.")
+            ("Temperature", "Use this grid as the temperature of blackbody emission.")
         }
         Role::Flame => {
-            ("Flame", "This grid says how much flame there is, which glows through a color ramp.")
+            ("Flame", "Use this grid as the flame, mapped to emission through a color ramp.")
         }
-        Role::Emission => ("Emission", "This grid is the glow itself."),
+        Role::Emission => ("Emission", "Use this grid as the emission."),
     }
 }

@@ -5,18 +5,18 @@ use egui::{Button, RichText, Ui, vec2};
 use super::{Panel, folded_section};
 use crate::app::ui::theme::color;
 use crate::app::ui::widgets::{
-    Number, Vector, choice, color_rows, key_help, scaled, significant, strength,
+    Number, Vector, color_rows, key_help, row_label, scaled, segments, significant, strength,
 };
 use crate::scene::new_light;
 use crate::scene::settings::{CameraSettings, LightKind, LightSettings};
 
 /// The kinds with their names and what they are good for.
 const KINDS: [(LightKind, &str, &str); 5] = [
-    (LightKind::Sun, "Sun", "Far away, from one direction: sun or moon."),
-    (LightKind::Point, "Point", "A point that shines everywhere: hard shadows, no size."),
+    (LightKind::Sun, "Sun", "A distant light from one direction: sun or moon."),
+    (LightKind::Point, "Point", "A point that shines in all directions: hard shadows, no size."),
     (LightKind::Spot, "Spot", "A point that shines into a cone."),
-    (LightKind::Sphere, "Sphere", "A glowing ball: a lamp that is seen."),
-    (LightKind::Quad, "Quad", "A glowing parallelogram: a window or a softbox."),
+    (LightKind::Sphere, "Sphere light", "An emitting sphere: a lamp that the camera can see."),
+    (LightKind::Quad, "Area light", "An emitting parallelogram: a window or a softbox."),
 ];
 
 /// Shows the section.
@@ -29,7 +29,7 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
         edit = edit.or(add(ui, lights, &camera, panel.selected_light));
         *panel.selected_light = panel.selected_light.filter(|index| *index < lights.len());
         if lights.is_empty() {
-            ui.weak("There are no lamps in this scene.");
+            ui.weak("No lights yet.");
         }
         let kinds: Vec<LightKind> = lights.iter().map(|light| light.kind).collect();
         for index in 0..kinds.len() {
@@ -69,7 +69,7 @@ fn environment(ui: &mut Ui, panel: &mut Panel<'_>) -> Option<&'static str> {
         reset,
     };
     let radiance = &mut panel.editor.document.settings.environment.radiance;
-    color_rows(ui, number, radiance).then_some("sky")
+    color_rows(ui, number, "Sky color", radiance).then_some("sky")
 }
 
 /// A button for each kind.
@@ -80,7 +80,7 @@ fn add(
     selected: &mut Option<usize>,
 ) -> Option<&'static str> {
     let mut edit = None;
-    ui.horizontal(|ui| {
+    ui.horizontal_wrapped(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
         ui.label(RichText::new("Add").color(color::TEXT_DIM));
         for (kind, name, help) in KINDS {
@@ -104,7 +104,7 @@ fn item(ui: &mut Ui, lights: &[LightSettings], index: usize, selected: &mut Opti
     let bright = RichText::new(brightness(light)).small().color(tint);
     let button = Button::selectable(is_selected, &*name).right_text(bright);
     let response = ui.add(button.min_size(vec2(ui.available_width(), 0.0)));
-    let help = "Show the keys of this light, and handles over the picture that move it.";
+    let help = "Show the settings of this light, and handles over the picture that move it.";
     if response.on_hover_text(help).accessible_name(&name).clicked() {
         *selected = if is_selected { None } else { Some(index) };
     }
@@ -118,14 +118,14 @@ fn buttons(
 ) -> Option<&'static str> {
     let mut edit = None;
     ui.horizontal(|ui| {
-        let help = "Add a light that is the same, at the same place.";
+        let help = "Add a copy of the light at the same place.";
         if ui.button("Duplicate light").on_hover_text(help).clicked() {
             let copy = lights.get(index).cloned();
             lights.splice(index + 1..index + 1, copy);
             *selected = Some(index + 1);
             edit = Some("duplicate a light");
         }
-        let help = "Take the light out of the scene; Undo brings it back.";
+        let help = "Remove the light from the scene. This can be undone.";
         if ui.button("Delete light").on_hover_text(help).clicked() && index < lights.len() {
             lights.remove(index);
             *selected = None;
@@ -157,9 +157,9 @@ fn keys(
     camera: &CameraSettings,
 ) -> Option<&'static str> {
     let mut edit = None;
-    if choice(ui, "Kind", "light.N.type", &mut light.kind) {
+    if choose_type(ui, &mut light.kind) {
         *light = changed_kind(light, camera);
-        return Some("kind of light");
+        return Some("light type");
     }
     let kind = light.kind;
     let name = match kind {
@@ -176,17 +176,29 @@ fn keys(
         unit: if name == "Intensity" { " W/sr" } else { "" },
         reset: around,
     };
-    if color_rows(ui, number, &mut light.intensity) {
+    if color_rows(ui, number, "Light color", &mut light.intensity) {
         edit = Some("brightness of a light");
     }
     edit = edit.or(place(ui, light, reset, camera)).or(shape(ui, light, reset));
     if !matches!(kind, LightKind::Point | LightKind::Spot) {
         let help = key_help("light.N.visible");
-        if ui.checkbox(&mut light.visible, "Seen by the camera").on_hover_text(help).changed() {
-            edit = Some("visible light");
+        if ui.checkbox(&mut light.visible, "Visible to camera").on_hover_text(help).changed() {
+            edit = Some("light visibility");
         }
     }
     edit
+}
+
+/// The types of light by their names in the window; whether another one was chosen.
+fn choose_type(ui: &mut Ui, kind: &mut LightKind) -> bool {
+    let choices = KINDS.map(|(_, name, help)| (name, help));
+    let chosen = KINDS.iter().position(|(other, ..)| other == kind);
+    row_label(ui, "Light type", &key_help("light.N.type"));
+    let clicked = ui.name_inputs("Light type", |ui| segments(ui, &choices, chosen));
+    let clicked = clicked.filter(|index| Some(*index) != chosen);
+    let Some((other, ..)) = clicked.and_then(|index| KINDS.get(index)) else { return false };
+    *kind = *other;
+    true
 }
 
 /// A light of the kind that was just chosen, where the old one stood, with its hue.
@@ -232,20 +244,20 @@ fn place(
             row(&mut light.position, present, shown);
             if light.kind == LightKind::Spot {
                 let present = light.target();
-                let shown = vector("Aimed at", "light.N.target", speed, reset.target());
+                let shown = vector("Target", "light.N.target", speed, reset.target());
                 row(&mut light.target, present, shown);
             }
         }
         LightKind::Sphere | LightKind::Quad => {
             let present = light.center();
-            let shown = vector("Center", "light.N.center", speed, reset.center());
+            let shown = vector("Light center", "light.N.center", speed, reset.center());
             row(&mut light.center, present, shown);
             if light.kind == LightKind::Quad {
                 let present = light.half_u();
-                let shown = vector("Half edge u", "light.N.half_u", speed, reset.half_u());
+                let shown = vector("Edge u", "light.N.half_u", speed, reset.half_u());
                 row(&mut light.half_u, present, shown);
                 let present = light.half_v();
-                let shown = vector("Half edge v", "light.N.half_v", speed, reset.half_v());
+                let shown = vector("Edge v", "light.N.half_v", speed, reset.half_v());
                 row(&mut light.half_v, present, shown);
             }
         }
@@ -273,7 +285,7 @@ fn shape(ui: &mut Ui, light: &mut LightSettings, reset: &LightSettings) -> Optio
     match light.kind {
         LightKind::Sun => {
             let present = light.angle();
-            let shown = number("Disk", "light.N.angle", 30.0, "°", reset.angle());
+            let shown = number("Angular diameter", "light.N.angle", 30.0, "°", reset.angle());
             row(&mut light.angle, present, 0.0, shown);
         }
         LightKind::Spot => {

@@ -3,7 +3,10 @@
 use egui::{DragValue, Ui, vec2};
 
 use crate::app::ui::theme::space;
-use crate::app::ui::widgets::{Number, Vector, choice, finite, is_reset, key_help, row_label};
+use crate::app::ui::widgets::{
+    Number, Vector, choice, doubled_help, finite, is_reset, key_help, row_label,
+};
+use crate::scene::keys;
 use crate::scene::settings::{Extent, RampKind, VolumeSettings, VolumeShape};
 
 /// Degrees that a point of a drag turns.
@@ -20,7 +23,7 @@ pub fn show(
     if volume.matrix.is_some() {
         let help = key_help("volume.N.matrix");
         row_label(ui, "Placement", &help);
-        let give_up = "Take the matrix away, so that the volume stands as its file says.";
+        let give_up = "Remove the matrix; the volume is then placed as in its file.";
         return ui.button("Remove matrix").on_hover_text(give_up).clicked().then(|| {
             volume.matrix = None;
             "placement"
@@ -29,22 +32,28 @@ pub fn show(
     let mut edit = None;
     let place = |name, key, speed, unit, reset| Vector { name, key, speed, unit, reset };
     let speed = (size * 0.005).max(1e-4);
-    let translate = place("Move", "volume.N.translate", speed, "", opened.translate);
+    let translate = place("Translate", "volume.N.translate", speed, "", opened.translate);
     if translate.show(ui, &mut volume.translate) {
         edit = Some("move the volume");
     }
     let rotate = place("Rotate", "volume.N.rotate", DEGREES, "°", opened.rotate);
     if rotate.show(ui, &mut volume.rotate) {
-        edit = Some("turn the volume");
+        edit = Some("rotate the volume");
     }
-    if extent(ui, "Scale", "volume.N.scale", &mut volume.scale, opened.scale) {
+    let scale = ("Scale", "volume.N.scale", &*key_help("volume.N.scale"));
+    if extent(ui, scale, &mut volume.scale, opened.scale) {
         edit = Some("scale the volume");
     }
     edit
 }
 
 /// A length for all axes, or one each where the scene file says so or the button is pressed.
-pub fn extent(ui: &mut Ui, name: &str, key: &str, value: &mut Extent, reset: Extent) -> bool {
+fn extent(
+    ui: &mut Ui,
+    (name, key, help): (&str, &str, &str),
+    value: &mut Extent,
+    reset: Extent,
+) -> bool {
     let before = *value;
     match value {
         Extent::Uniform(length) => {
@@ -59,7 +68,8 @@ pub fn extent(ui: &mut Ui, name: &str, key: &str, value: &mut Extent, reset: Ext
             };
             // Nothing may shrink to a point.
             let kept = *length;
-            if number.show(ui, length) && *length == 0.0 {
+            let limits = keys::find(key).map_or([f64::MIN, f64::MAX], |key| key.limits);
+            if number.show_as(ui, length, help, limits) && *length == 0.0 {
                 *length = kept;
             }
         }
@@ -67,12 +77,29 @@ pub fn extent(ui: &mut Ui, name: &str, key: &str, value: &mut Extent, reset: Ext
             let speed = (axes[0].abs() * 0.01).max(1e-4);
             let vector = Vector { name, key, speed, unit: "", reset: reset.axes() };
             let kept = *axes;
-            if vector.show(ui, axes) && axes.contains(&0.0) {
+            if vector.show_as(ui, axes, help) && axes.contains(&0.0) {
                 *axes = kept;
             }
         }
     }
     *value != before
+}
+
+/// The full size of something whose key in the scene file is half of it; whether it changed.
+pub fn size(ui: &mut Ui, key: &str, half: &mut Extent, reset: Extent) -> bool {
+    let mut whole = scaled(*half, 2.0);
+    let changed = extent(ui, ("Size", key, &doubled_help(key)), &mut whole, scaled(reset, 2.0));
+    if changed {
+        *half = scaled(whole, 0.5);
+    }
+    changed
+}
+
+fn scaled(extent: Extent, factor: f32) -> Extent {
+    match extent {
+        Extent::Uniform(length) => Extent::Uniform(factor * length),
+        Extent::Axes(axes) => Extent::Axes(axes.map(|length| factor * length)),
+    }
 }
 
 /// Shows the keys of the volume's shape, if it is one; the name of the edit if anything changed.
@@ -104,7 +131,7 @@ pub fn shape(
 
 fn half_size(ui: &mut Ui, volume: &mut VolumeSettings, opened: &VolumeSettings) -> bool {
     let mut half_size = volume.half_size();
-    let changed = extent(ui, "Half size", "volume.N.half_size", &mut half_size, opened.half_size());
+    let changed = size(ui, "volume.N.half_size", &mut half_size, opened.half_size());
     if changed {
         volume.half_size = Some(half_size);
     }
@@ -126,19 +153,19 @@ fn ramp(ui: &mut Ui, volume: &mut VolumeSettings, opened: &VolumeSettings) -> bo
         changed = true;
     }
     let mut a = volume.a();
-    if number(ui, "Low value", "a", &mut a, opened.a()) {
+    if number(ui, "Start value", "a", &mut a, opened.a()) {
         volume.a = Some(a);
         changed = true;
     }
     if volume.kind() == RampKind::Linear {
         let mut b = volume.b();
-        if number(ui, "Change", "b", &mut b, opened.b()) {
+        if number(ui, "Slope", "b", &mut b, opened.b()) {
             volume.b = Some(b);
             changed = true;
         }
     } else {
         let mut h = volume.h();
-        if number(ui, "Fall length", "h", &mut h, opened.h()) {
+        if number(ui, "Falloff length", "h", &mut h, opened.h()) {
             volume.h = Some(h);
             changed = true;
         }
@@ -194,7 +221,8 @@ fn whole(
     reset: u32,
 ) -> bool {
     let before = *value;
-    let help = format!("{}\n\nDouble-click for {reset}.", key_help(&format!("volume.N.{key}")));
+    let help =
+        format!("{}\n\nDouble-click to reset to {reset}.", key_help(&format!("volume.N.{key}")));
     ui.horizontal(|ui| {
         let label = row_label(ui, name, &help);
         let field = DragValue::new(value).speed(0.1).range(range).custom_parser(finite);

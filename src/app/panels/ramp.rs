@@ -104,7 +104,7 @@ impl RampEditor {
             histogram_bars(ui.painter(), bars, voxels, color::TEXT_DIM.gamma_multiply(0.5));
         }
         let help = format!(
-            "{}\n\nDouble-click to add a stop. The bars are the values of the grid.",
+            "{}\n\nDouble-click to add a stop. The bars are the histogram of the grid.",
             key_help(KEY)
         );
         if let Some(at) = response.interact_pointer_pos().filter(|_| response.double_clicked()) {
@@ -139,7 +139,7 @@ impl RampEditor {
             }
             let is_gone = response.has_focus() && self.keys(ui, id, stops, index, span);
             paint_handle(ui, rect, &response, stop, self.selected == index);
-            response.on_hover_text("Drag, or move with the arrow keys; Delete takes it out.");
+            response.on_hover_text("Drag, or move with the arrow keys; Delete removes it.");
             if is_gone {
                 // The next one takes its place and its identity, in the next frame.
                 ui.ctx().request_repaint();
@@ -183,18 +183,18 @@ impl RampEditor {
         span: &RangeInclusive<f32>,
     ) {
         ui.horizontal(|ui| {
-            let help = "Add a stop where there is most room, in the color that is there already.";
+            let help = "Add a stop in the largest gap, in the color the ramp has there.";
             if ui.button("Add stop").on_hover_text(help).clicked() {
                 self.selected = ramp_stops::add_anywhere(stops, span);
                 self.edit = Some("add a stop");
             }
             let delete = ui.add_enabled(stops.len() > 1, egui::Button::new("Delete stop"));
-            if delete.on_hover_text("Take the chosen stop out.").clicked() {
+            if delete.on_hover_text("Remove the selected stop.").clicked() {
                 self.selected = ramp_stops::remove(stops, self.selected);
                 self.edit = Some("delete a stop");
             }
             let reset = ui.add_enabled(*stops != opened, egui::Button::new("Reset ramp"));
-            if reset.on_hover_text("Back to the ramp as it was opened.").clicked() {
+            if reset.on_hover_text("Reset the ramp to the opened one.").clicked() {
                 *stops = opened.to_vec();
                 self.edit = Some("reset the ramp");
             }

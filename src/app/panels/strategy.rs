@@ -1,4 +1,4 @@
-//! The toggles and what each does.
+//! The strategy: presets, toggles and advanced settings.
 
 use egui::{CollapsingHeader, Layout, RichText, Ui};
 
@@ -7,24 +7,10 @@ use crate::app::command::Command;
 use crate::app::compare::panel;
 use crate::app::ui::sections::mark;
 use crate::app::ui::theme::{color, space};
-use crate::app::ui::widgets::{capitalized, key_help, key_summary, row, segments};
+use crate::app::ui::widgets::{capitalized, key_help, key_of, key_summary, row, segments};
 use crate::scene::effect::no_effect;
 use crate::transport::strategy::Preset;
 use crate::transport::toggle::Toggle;
-
-/// The toggles with their commands, which know their keys.
-const TOGGLES: [(Toggle, Command); 5] = [
-    (Toggle::EmissionDecoupling, Command::EmissionDecoupling),
-    (Toggle::EmissionRatioTracking, Command::EmissionRatioTracking),
-    (Toggle::MajorantBoost, Command::MajorantBoost),
-    (Toggle::FireAsLight, Command::FireAsLight),
-    (Toggle::Probes, Command::Probes),
-];
-
-/// The toggle that `command` switches.
-pub fn toggle_of(command: Command) -> Option<Toggle> {
-    TOGGLES.iter().find(|(_, other)| *other == command).map(|(toggle, _)| *toggle)
-}
 
 /// Shows the section.
 pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
@@ -37,9 +23,9 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
             let text = RichText::new(text).small().color(color::WARNING);
             ui.add(egui::Label::new(text).wrap()).on_hover_text(key_help("strategy.integrator"));
         }
-        for (toggle, command) in TOGGLES {
+        for toggle in Toggle::all() {
             ui.add_space(space::TIGHT);
-            row_of(ui, panel, toggle, command);
+            row_of(ui, panel, toggle);
         }
         ui.add_space(space::TIGHT);
         mark(ui, "advanced");
@@ -49,21 +35,21 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
     });
 }
 
-fn row_of(ui: &mut Ui, panel: &mut Panel<'_>, toggle: Toggle, command: Command) {
-    let key = toggle.key();
+fn row_of(ui: &mut Ui, panel: &mut Panel<'_>, toggle: Toggle) {
+    let (key, name) = (toggle.key(), toggle.name());
     let idle = no_effect(toggle, &panel.editor.document.settings);
     ui.horizontal(|ui| {
         let strategy = &mut panel.editor.document.settings.strategy;
-        let text = RichText::new(command.text()).color(match idle {
+        let text = RichText::new(name).color(match idle {
             Some(_) => color::TEXT_DIM,
             None => color::TEXT_STRONG,
         });
         let response = ui.checkbox(toggle.switch(strategy), text).on_hover_text(key_help(key));
         if response.changed() {
-            panel.editor.name_edit(command.text().to_lowercase());
+            panel.editor.name_edit(name.to_lowercase());
         }
         ui.with_layout(Layout::right_to_left(egui::Align::Center), |ui| {
-            let key = ui.ctx().format_shortcut(&command.shortcut());
+            let key = key_of(ui, Command::Toggle(toggle));
             ui.label(RichText::new(key).monospace().color(color::TEXT_DIM));
         });
     });
@@ -72,7 +58,7 @@ fn row_of(ui: &mut Ui, panel: &mut Panel<'_>, toggle: Toggle, command: Command) 
         let unpaid = toggle == Toggle::Probes && panel.guided_flights == Some(0.0);
         let why = match idle {
             Some(reason) => Some(format!("No effect here: {reason}")),
-            None => unpaid.then(|| "Not asked in this picture: that would not pay.".to_owned()),
+            None => unpaid.then(|| "Switched off automatically: no gain in this shot.".to_owned()),
         };
         if let Some(text) = why {
             ui.add(egui::Label::new(RichText::new(text).small().color(color::WARNING)).wrap());
@@ -90,9 +76,9 @@ fn presets(ui: &mut Ui, panel: &mut Panel<'_>) {
         .iter()
         .map(|preset| {
             let help = match preset {
-                Preset::Baseline => "Every strategy off: what a plain volume path tracer does.",
-                Preset::Emission => "The strategies for fire on.",
-                Preset::Full => "Every strategy on.",
+                Preset::Baseline => "All strategies off: a plain volume path tracer.",
+                Preset::Emission => "The strategies for fire on, light probes off.",
+                Preset::Full => "All strategies on.",
             };
             (capitalized(preset.name()), help.to_owned())
         })

@@ -15,16 +15,16 @@ use crate::scene::settings::{
 
 /// The shapes with their names and what they are good for.
 const SHAPES: [(SurfaceShape, &str, &str); 4] = [
-    (SurfaceShape::Plane, "Plane", "An endless plane, or a square of it."),
+    (SurfaceShape::Plane, "Plane", "An infinite plane, or a square."),
     (SurfaceShape::Quad, "Quad", "A parallelogram: a wall or a card."),
-    (SurfaceShape::Sphere, "Sphere", "A ball."),
-    (SurfaceShape::Box, "Box", "A box along the axes."),
+    (SurfaceShape::Sphere, "Sphere", "A sphere."),
+    (SurfaceShape::Box, "Box", "An axis-aligned box."),
 ];
 /// What a new surface measures, in sizes of what fills space.
 const NEW_SIZE: f32 = 0.25;
 const MATERIALS: [(Option<MaterialKind>, &str, &str); 4] = [
-    (None, "Auto", "Diffuse gray, or black where it glows."),
-    (Some(MaterialKind::Diffuse), "Diffuse", "Reflects evenly to all sides, like chalk."),
+    (None, "Auto", "Diffuse gray, or black if the surface emits."),
+    (Some(MaterialKind::Diffuse), "Diffuse", "Reflects evenly in all directions, like chalk."),
     (Some(MaterialKind::Conductor), "Metal", "Reflects like rough metal."),
     (Some(MaterialKind::Black), "Black", "Reflects nothing."),
 ];
@@ -40,7 +40,7 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
         let mut edit = floor_button(ui, surfaces, &bounds, up);
         edit = edit.or(add(ui, surfaces, &bounds));
         if surfaces.is_empty() {
-            ui.weak("There is nothing solid in this scene.");
+            ui.weak("No surfaces yet.");
         }
         for index in 0..surfaces.len() {
             let count = surfaces.len();
@@ -69,7 +69,7 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
 
 fn title(surface: &SurfaceSettings, index: usize) -> String {
     let name = SHAPES.iter().find(|(shape, ..)| *shape == surface.shape);
-    let emits = if surface.emission.is_black() { "" } else { ", glowing" };
+    let emits = if surface.emission.is_black() { "" } else { ", emitting" };
     format!("{} {}{emits}", name.map_or("Surface", |(_, name, _)| name), index + 1)
 }
 
@@ -79,8 +79,8 @@ fn floor_button(
     bounds: &Aabb,
     up: glam::Vec3A,
 ) -> Option<&'static str> {
-    let help = "A gray floor just below the volumes, twenty times as wide: fire lights it, and what \
-                it reflects lights the smoke from below.";
+    let help = "A gray floor just below the volumes, twenty times as wide. Fire lights it, and it \
+                reflects light to the smoke from below.";
     ui.button("Add floor").on_hover_text(help).clicked().then(|| {
         surfaces.push(floor_under(bounds, up));
         "add a floor"
@@ -135,13 +135,13 @@ fn new_surface(shape: SurfaceShape, bounds: &Aabb) -> SurfaceSettings {
 fn buttons(ui: &mut Ui, surfaces: &mut Vec<SurfaceSettings>, index: usize) -> Option<&'static str> {
     let mut edit = None;
     ui.horizontal(|ui| {
-        let help = "Add a surface that is the same, at the same place.";
+        let help = "Add a copy of the surface at the same place.";
         if ui.button("Duplicate surface").on_hover_text(help).clicked() {
             let copy = surfaces.get(index).cloned();
             surfaces.splice(index + 1..index + 1, copy);
             edit = Some("duplicate a surface");
         }
-        let help = "Take the surface out of the scene; Undo brings it back.";
+        let help = "Remove the surface from the scene. This can be undone.";
         if ui.button("Delete surface").on_hover_text(help).clicked() && index < surfaces.len() {
             surfaces.remove(index);
             edit = Some("delete a surface");
@@ -175,15 +175,15 @@ fn keys(
     edit = edit.or(material(ui, surface, reset));
     let around = strength(reset.emission);
     let number = Number {
-        name: "Surface glow",
+        name: "Emission",
         key: "surface.N.emission",
         soft: 0.0..=if around > 0.0 { around * 10.0 } else { 10.0 },
         logarithmic: true,
         unit: "",
         reset: around,
     };
-    if color_rows(ui, number, &mut surface.emission) {
-        edit = Some("glow of a surface");
+    if color_rows(ui, number, "Emission color", &mut surface.emission) {
+        edit = Some("surface emission");
     }
     edit
 }
@@ -214,13 +214,13 @@ fn place(
         row(&mut surface.normal, normal, ("Normal", "surface.N.normal", 0.01), reset.normal());
     } else {
         let center = surface.center();
-        let row_center = ("Surface center", "surface.N.center", speed);
+        let row_center = ("Center", "surface.N.center", speed);
         row(&mut surface.center, center, row_center, reset.center());
     }
     if surface.shape == SurfaceShape::Quad {
         let (u, v) = (surface.half_u(), surface.half_v());
-        row(&mut surface.half_u, u, ("Half edge u", "surface.N.half_u", speed), reset.half_u());
-        row(&mut surface.half_v, v, ("Half edge v", "surface.N.half_v", speed), reset.half_v());
+        row(&mut surface.half_u, u, ("Edge u", "surface.N.half_u", speed), reset.half_u());
+        row(&mut surface.half_v, v, ("Edge v", "surface.N.half_v", speed), reset.half_v());
     }
     changed |= measures(ui, surface, reset, size);
     changed.then_some("place of a surface")
@@ -239,7 +239,7 @@ fn measures(
         SurfaceShape::Sphere => {
             let mut radius = surface.radius();
             let number = Number {
-                name: "Surface radius",
+                name: "Radius",
                 key: "surface.N.radius",
                 soft: 0.0..=reset.radius() * 5.0,
                 logarithmic: false,
@@ -255,7 +255,7 @@ fn measures(
         SurfaceShape::Box => {
             let mut half = surface.half_size.unwrap_or_default();
             let reset = reset.half_size.unwrap_or_default();
-            let changed = placement::extent(ui, "Half size", key, &mut half, reset);
+            let changed = placement::size(ui, key, &mut half, reset);
             if changed {
                 surface.half_size = Some(half);
             }
@@ -270,13 +270,13 @@ fn square(ui: &mut Ui, surface: &mut SurfaceSettings, reset: &SurfaceSettings, s
     let key = "surface.N.half_size";
     let mut changed = false;
     let mut ends = surface.half_size.is_some();
-    if ui.checkbox(&mut ends, "Limited").on_hover_text(key_help(key)).changed() {
+    if ui.checkbox(&mut ends, "Finite").on_hover_text(key_help(key)).changed() {
         surface.half_size = ends.then_some(Extent::Uniform(20.0 * size.max(1e-3)));
         changed = true;
     }
     if let Some(mut half) = surface.half_size {
         let reset = reset.half_size.unwrap_or(half);
-        if placement::extent(ui, "Half size", key, &mut half, reset) {
+        if placement::size(ui, key, &mut half, reset) {
             surface.half_size = Some(half);
             changed = true;
         }
@@ -319,7 +319,7 @@ fn material(
         unit: "",
         reset: strength(before.reflectance()),
     };
-    if color_rows(ui, number, &mut reflectance) {
+    if color_rows(ui, number, "Reflectance color", &mut reflectance) {
         material.reflectance = Some(reflectance);
         edit = Some("reflectance");
     }

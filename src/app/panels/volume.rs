@@ -1,4 +1,4 @@
-//! The volumes: what their files hold, what was guessed of it, and how they look.
+//! The volumes: the grids of their files, the guesses made of them, and their medium and emission.
 
 use egui::accesskit::Role;
 use egui::{CollapsingHeader, RichText, Ui, WidgetInfo};
@@ -22,7 +22,7 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
         let titles: Vec<String> = volumes.map(|(index, volume)| title(volume, index)).collect();
         notes(ui, panel);
         match &titles[..] {
-            [] => drop(ui.weak("There is no volume in this scene.")),
+            [] => drop(ui.weak("No volumes yet.")),
             [title] => {
                 ui.label(RichText::new(title).color(color::TEXT_STRONG));
                 one(ui, panel, 0);
@@ -86,12 +86,12 @@ fn up_axis_row(
     let axes = [Axis::Y, Axis::Z];
     let present = settings.volume.get(index).and_then(up_axis::of);
     let chosen = axes.iter().position(|axis| Some(*axis) == present);
-    let help = "Which way is up in the file: Houdini's files have y up, Blender's z.";
+    let help = "The axis that points up in the file: y in Houdini's files, z in Blender's.";
     let clicked = row(ui, "Up axis", help, |ui| {
         let clicked = segments(ui, &[("Y up", help), ("Z up", help)], chosen);
         if let Some(note) = guess {
             let text = RichText::new("guess").small().italics().color(color::WARNING);
-            let help = format!("Guessed: {}. A click on the other button mends it.", note.text);
+            let help = format!("Guessed: {}. Click the other button to change it.", note.text);
             ui.label(text).on_hover_text(help);
         }
         clicked
@@ -111,18 +111,20 @@ fn programs(
     let helps = Program::ALL.map(|program| {
         let up = if program.up() == Axis::Y { "y" } else { "z" };
         format!(
-            "Take density, fire and the scale of temperature as {} writes them, with {up} up.",
+            "Read density, fire and temperature as {} exports them, with {up} up.",
             program.name()
         )
     });
     let choices: Vec<(&str, &str)> =
         Program::ALL.iter().zip(&helps).map(|(program, help)| (program.name(), &**help)).collect();
-    let help = "The program that wrote the file: one click for its grids, its scale of temperature \
-                and its up axis.";
+    let help = "Sets the grids, the temperature scale and the up axis to the conventions of the \
+                program that exported the file.";
     let clicked = ui.horizontal(|ui| {
         // A label of its own width: the names need the room.
-        ui.label(RichText::new("Written by").color(color::TEXT_DIM)).on_hover_text(help);
-        segments(ui, &choices, None)
+        ui.label(RichText::new("Treat as").color(color::TEXT_DIM)).on_hover_text(help);
+        let clicked = segments(ui, &choices, None);
+        ui.label(RichText::new("export").color(color::TEXT_DIM)).on_hover_text(help);
+        clicked
     });
     let program = clicked.inner.and_then(|clicked| Program::ALL.get(clicked))?;
     let volume = settings.volume.get_mut(index)?;
@@ -130,7 +132,7 @@ fn programs(
     if volume.matrix.is_none() {
         up_axis::set(settings, index, program.up());
     }
-    Some("conventions of a program")
+    Some("export conventions")
 }
 
 /// Whether what was guessed still stands.
@@ -138,7 +140,7 @@ fn stands(note: &Note, volume: &VolumeSettings, opened: &VolumeSettings) -> bool
     match note.about {
         About::UpAxis => volume.rotate == opened.rotate,
         About::Density => volume.density == opened.density,
-        About::Glow => {
+        About::Emission => {
             let of = |volume: &VolumeSettings| {
                 (volume.emission.mode, volume.emission.grid.clone(), volume.emission.kelvin_scale)
             };
@@ -198,12 +200,12 @@ fn medium(
         unit: "",
         reset,
     };
-    if color_rows(ui, number, &mut volume.density.scale) {
+    if color_rows(ui, number, "Extinction color", &mut volume.density.scale) {
         edit = Some("density");
     }
     edit = edit.or(albedo(ui, volume, opened));
     let row = Number {
-        name: "Phase g",
+        name: "Anisotropy (g)",
         key: "volume.N.phase.g",
         soft: -0.95..=0.95,
         logarithmic: false,
@@ -211,7 +213,7 @@ fn medium(
         reset: opened.phase.g,
     };
     if row.show(ui, &mut volume.phase.g) {
-        edit = Some("phase");
+        edit = Some("anisotropy");
     }
     edit
 }
@@ -241,7 +243,7 @@ fn albedo(
         unit: "",
         reset: as_color(&opened.albedo).map_or(0.0, strength),
     };
-    color_rows(ui, number, &mut value).then(|| {
+    color_rows(ui, number, "Scattering color", &mut value).then(|| {
         volume.albedo = match value {
             Color::Gray(value) => Albedo::Gray(value),
             Color::Rgb(rgb) => Albedo::Rgb(rgb),

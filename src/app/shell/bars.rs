@@ -41,12 +41,12 @@ pub enum Dropped {
 pub fn dropped(ui: &mut Ui, name: &str) -> Option<Dropped> {
     ui.horizontal(|ui| {
         ui.label(RichText::new(name).color(color::TEXT_STRONG));
-        let open = "Open its scene and go on from its samples.";
-        let reference = "Measure the picture against it: how far it is off, and where.";
+        let open = "Open its scene and resume from its samples.";
+        let reference = "Measure the live picture against it: how far off, and where.";
         let choices = [
-            ("Open it", open, Dropped::Open),
+            ("Open", open, Dropped::Open),
             ("Use as reference", reference, Dropped::Reference),
-            ("Cancel", "Do nothing.", Dropped::Cancelled),
+            ("Cancel", "Ignore the file.", Dropped::Cancelled),
         ];
         let mut chosen = None;
         for (text, help, choice) in choices {

@@ -5,12 +5,11 @@ use glam::UVec2;
 
 use super::app::App;
 use crate::app::command::Command;
+use crate::app::document::Side;
 use crate::app::jobs::dialogs::Purpose;
-use crate::app::panels::strategy;
-use crate::app::shell::palette::Palette;
-use crate::app::shell::start::StartRow;
 use crate::image::tone::{Channel, auto_exposure};
 use crate::scene;
+use crate::transport::toggle::Toggle;
 
 impl App {
     /// Carries out one command.
@@ -25,46 +24,100 @@ impl App {
             Command::Undo => self.editor.undo(),
             Command::Redo => self.editor.redo(),
             Command::PauseResume => self.engine.set_paused(!self.engine.paused()),
-            Command::Restart => {
-                self.engine.restart();
-                self.compare.second_side.restart();
-            }
+            Command::Restart => self.restart(),
+            Command::Toggle(toggle) => self.switch(toggle),
             Command::FrameVolume => self.frame_volume(),
             Command::FitPicture => self.viewport.zoom = Default::default(),
-            Command::ZoomToPixels => {
-                let size = self.shown_picture().map(|picture| picture.size);
-                self.viewport.toggle_pixel_zoom(size);
-            }
-            Command::GoToPicture => self.viewport.wants_keyboard = true,
+            Command::ZoomToPixels => self.zoom_to_pixels(),
+            Command::ExposureUp => self.expose_by(0.5),
+            Command::ExposureDown => self.expose_by(-0.5),
             Command::AutoExposure => self.expose(),
-            Command::FullScreen => self.chrome.set_full_screen(ctx, !self.chrome.full_screen),
-            Command::Start => {
-                self.chrome.start = match self.chrome.start.take() {
-                    Some(_) => None,
-                    None => Some(StartRow::default()),
-                };
-            }
+            Command::NextToneCurve => self.next_tone_curve(),
+            Command::FalseColor => self.toggle_false_color(),
+            Command::GoToPicture => self.viewport.wants_keyboard = true,
             Command::FoldPanels => self.chrome.folded = !self.chrome.folded,
-            Command::Palette => {
-                self.chrome.palette = match self.chrome.palette.take() {
-                    Some(_) => None,
-                    None => Some(Palette::default()),
-                };
-            }
+            Command::FullScreen => self.chrome.set_full_screen(ctx, !self.chrome.full_screen),
             Command::Larger => egui::gui_zoom::zoom_in(ctx),
             Command::Smaller => egui::gui_zoom::zoom_out(ctx),
             Command::NormalSize => ctx.set_zoom_factor(1.0),
             Command::ResetWindow => self.reset_window(ctx),
-            Command::Sweep => self.sweep.ask(&self.editor.document.settings),
+            Command::Palette => toggle_open(&mut self.chrome.palette),
+            Command::Start => toggle_open(&mut self.chrome.start),
             Command::Shortcuts => self.chrome.help = !self.chrome.help,
-            _ if self.execute_stored(ctx, command) || self.execute_measure(ctx, command) => {}
-            _ => self.edit(command),
+            Command::Compare => self.compare_or_end(),
+            Command::SwitchSide => self.switch_side(),
+            Command::SwapSides => self.swap_sides(),
+            Command::CopySide => self.copy_side(),
+            Command::NextLayout => self.next_layout(),
+            Command::CompareAsA => self.set_against_live(Side::A),
+            Command::CompareAsB => self.set_against_live(Side::B),
+            Command::SaveComparison => self.ask_to_save_comparison(ctx),
+            Command::Rectangle => self.compare.region.arm(),
+            Command::SamplesHere => self.give_region_all_samples(),
+            Command::LoadReference => self.ask(ctx, Purpose::Reference),
+            Command::PictureAsReference => self.take_picture(ctx),
+            Command::RemoveReference => self.compare.reference.remove(),
+            Command::Sweep => self.sweep.ask(&self.editor.document.settings),
+            Command::KeepSnapshot => self.snapshots.wants_keep = true,
+            Command::PreviousSnapshot => self.snapshots.strip.show_previous(),
+            Command::NextSnapshot => self.show_next_snapshot(),
+            Command::LivePicture => self.close_front(ctx),
+            Command::ContinueSnapshot => self.go_on_from_shown(),
+            Command::DeleteSnapshot => self.snapshots.delete(),
+            Command::UndoDelete => self.snapshots.undo_delete(),
+            Command::FoldStrip => self.snapshots.strip.toggle(),
         }
         ctx.request_repaint();
     }
 
+    /// Discards the samples of every side.
+    fn restart(&mut self) {
+        self.engine.restart();
+        self.compare.second_side.restart();
+    }
+
+    /// Switches a toggle of the edited strategy.
+    fn switch(&mut self, toggle: Toggle) {
+        let on = toggle.switch(&mut self.editor.document.settings.strategy);
+        *on = !*on;
+        self.editor.name_edit(toggle.name());
+    }
+
+    fn zoom_to_pixels(&mut self) {
+        let size = self.shown_picture().map(|picture| picture.size);
+        self.viewport.toggle_pixel_zoom(size);
+    }
+
+    /// Changes the exposure by `stops`.
+    fn expose_by(&mut self, stops: f32) {
+        self.editor.document.tone.exposure += stops;
+        self.editor.name_edit("exposure");
+    }
+
+    fn next_tone_curve(&mut self) {
+        let tone = &mut self.editor.document.tone;
+        tone.curve = tone.curve.next();
+        self.editor.name_edit("tone curve");
+    }
+
+    fn toggle_false_color(&mut self) {
+        let tone = &mut self.editor.document.tone;
+        tone.channel = match tone.channel {
+            Channel::FalseColor => Channel::Color,
+            _ => Channel::FalseColor,
+        };
+        self.editor.name_edit("false color");
+    }
+
+    /// Closes what is open in front, unless the key closes a popup already.
+    fn close_front(&mut self, ctx: &Context) {
+        if !ctx.any_popup_open() {
+            self.leave(ctx);
+        }
+    }
+
     /// Closes or takes back what is there beside the live picture, the front one first.
-    pub(super) fn leave(&mut self, ctx: &Context) {
+    fn leave(&mut self, ctx: &Context) {
         if self.chrome.help {
             self.chrome.help = false;
         } else if self.unsaved.pending.is_some() {
@@ -96,58 +149,6 @@ impl App {
         self.editor.name_edit("display");
     }
 
-    /// Commands that change the document.
-    fn edit(&mut self, command: Command) {
-        let document = &mut self.editor.document;
-        let name = match command {
-            Command::ExposureUp => {
-                document.tone.exposure += 0.5;
-                "exposure"
-            }
-            Command::ExposureDown => {
-                document.tone.exposure -= 0.5;
-                "exposure"
-            }
-            Command::NextToneCurve => {
-                document.tone.curve = document.tone.curve.next();
-                "tone curve"
-            }
-            Command::FalseColor => {
-                document.tone.channel = match document.tone.channel {
-                    Channel::FalseColor => Channel::Color,
-                    _ => Channel::FalseColor,
-                };
-                "false color"
-            }
-            Command::Compare => {
-                match document.compared {
-                    None => document.compare(),
-                    Some(_) => document.compared = None,
-                }
-                "comparison"
-            }
-            Command::SwitchSide => {
-                document.switch_side();
-                "edited side"
-            }
-            Command::SwapSides => {
-                document.swap_sides();
-                "swap of A and B"
-            }
-            Command::CopySide => {
-                document.copy_to_other_side();
-                "copy to the other side"
-            }
-            other => {
-                let Some(toggle) = strategy::toggle_of(other) else { return };
-                let switch = toggle.switch(&mut document.settings.strategy);
-                *switch = !*switch;
-                other.text()
-            }
-        };
-        self.editor.name_edit(name);
-    }
-
     /// Exposes for the picture that is shown.
     fn expose(&mut self) {
         let stops = self.shown_picture().and_then(|picture| auto_exposure(&picture.pixels));
@@ -164,6 +165,14 @@ impl App {
         let size = self.film_size().unwrap_or(UVec2::ONE).as_vec2();
         let camera = &mut self.editor.document.settings.camera;
         *camera = scene::frame(camera, &bounds, size.x / size.y);
-        self.editor.name_edit("frame the volume");
+        self.editor.name_edit("frame the volumes");
     }
+}
+
+/// Opens something anew, or closes it.
+fn toggle_open<T: Default>(part: &mut Option<T>) {
+    *part = match part.take() {
+        Some(_) => None,
+        None => Some(T::default()),
+    };
 }

@@ -12,12 +12,12 @@ const MOUSE: [(&str, &str); 12] = [
     ("Wheel, right drag", "Dolly"),
     ("Ctrl+wheel", "Zoom to pixels"),
     ("Ctrl+drag", "Move the zoomed picture"),
-    ("Double-click the picture", "Fit it again"),
-    ("M, then drag", "Figures of a rectangle"),
+    ("Double-click the picture", "Fit the picture"),
+    ("M, then drag", "Measure a region"),
     ("F6, then arrows", "Orbit"),
-    ("The same with Shift", "Pan"),
-    ("Page Up, Page Down", "Dolly"),
-    ("Double-click a setting", "Back to how it was opened"),
+    ("F6, then Shift+arrows", "Pan"),
+    ("F6, then Page Up, Page Down", "Dolly"),
+    ("Double-click a setting", "Reset it to the opened value"),
 ];
 
 /// Room that the page leaves around itself in a small window, its own title included.
@@ -45,7 +45,7 @@ fn page(ui: &mut Ui, columns: usize) {
         (ui.ctx().format_shortcut(&command.shortcut()), command.text().to_owned())
     };
     let of_mouse = |(hand, does): (&str, &str)| (hand.to_owned(), does.to_owned());
-    let keys = Command::ALL.into_iter().map(of_command);
+    let keys = Command::all().map(of_command);
     let rows: Vec<(String, String)> = keys.chain(MOUSE.into_iter().map(of_mouse)).collect();
     ui.horizontal_top(|ui| {
         for (index, rows) in rows.chunks(rows.len().div_ceil(columns)).enumerate() {

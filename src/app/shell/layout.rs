@@ -247,7 +247,7 @@ impl App {
         };
         let frame = theme::panel_frame();
         let row = egui::Panel::bottom("progress").frame(frame);
-        let help = "Stop loading and keep what is shown.";
+        let help = "Stop loading and keep the current scene.";
         if row.show(ui, |ui| bars::progress(ui, &what, fraction, help)).inner {
             self.engine.cancel();
         }

@@ -6,7 +6,6 @@ use std::sync::Arc;
 use egui::{Context, Ui};
 
 use super::app::App;
-use crate::app::command::Command;
 use crate::app::compare::reference::ReferenceOrigin;
 use crate::app::compare::rows;
 use crate::app::compare::rows::Asked;
@@ -45,7 +44,7 @@ impl App {
                 let document = &mut self.editor.document;
                 document.settings.film.size = size.to_array();
                 document.keep_size = true;
-                self.editor.name_edit("size of the film");
+                self.editor.name_edit("render size");
             }
             None => {}
         }
@@ -59,7 +58,7 @@ impl App {
     }
 
     /// Makes the picture shown the reference: a snapshot, or the live one of the edited side.
-    fn take_picture(&mut self, ctx: &Context) {
+    pub(super) fn take_picture(&mut self, ctx: &Context) {
         let snapshot = self.snapshots.strip.shown_item();
         let snapshot = snapshot.map(|item| (item.record.name.clone(), self.snapshots.file(item)));
         let engine = self.compare.second_side.edited(&self.engine);
@@ -74,7 +73,7 @@ impl App {
             }
             _ => {
                 self.notices.failed(
-                    "There is no picture to measure against yet: every pixel needs a sample.",
+                    "There is no picture to use as a reference yet: every pixel needs a sample.",
                 );
                 return;
             }
@@ -82,37 +81,31 @@ impl App {
         self.take_reference(ctx, origin);
     }
 
-    /// Carries out one of the commands about rectangle and reference; whether it was one.
-    pub(super) fn execute_measure(&mut self, ctx: &Context, command: Command) -> bool {
-        match command {
-            Command::NextLayout => {
-                self.compare.second_side.layout =
-                    self.compare.second_side.layout.next(&self.compare.layouts())
-            }
-            Command::Rectangle => self.compare.region.arm(),
-            Command::SamplesHere => {
-                self.compare.region.is_alone = !self.compare.region.is_alone;
-                if !self.compare.region.is_set() {
-                    self.compare.region.arm();
-                    self.compare.region.is_alone = true;
-                }
-            }
-            Command::LoadReference => self.ask(ctx, Purpose::Reference),
-            Command::PictureAsReference => self.take_picture(ctx),
-            Command::RemoveReference => self.compare.reference.remove(),
-            Command::SaveComparison
-                if self.compare.second_side.is_on()
-                    || self.compare.reference.loaded().is_some() =>
-            {
-                self.ask(ctx, Purpose::SaveComparison);
-            }
-            Command::SaveComparison => self.notices.failed(
-                "Nothing is compared: C sets two strategies against each other, Ctrl+Shift+S saves \
-                 the picture alone.",
-            ),
-            _ => return false,
+    /// Switches to the next view that there is.
+    pub(super) fn next_layout(&mut self) {
+        self.compare.second_side.layout =
+            self.compare.second_side.layout.next(&self.compare.layouts());
+    }
+
+    /// Gives the region all samples, or all pixels again. Without a region the next drag draws one.
+    pub(super) fn give_region_all_samples(&mut self) {
+        self.compare.region.is_alone = !self.compare.region.is_alone;
+        if !self.compare.region.is_set() {
+            self.compare.region.arm();
+            self.compare.region.is_alone = true;
         }
-        true
+    }
+
+    /// Asks where to save the comparison, if there is one.
+    pub(super) fn ask_to_save_comparison(&mut self, ctx: &Context) {
+        if self.compare.second_side.is_on() || self.compare.reference.loaded().is_some() {
+            self.ask(ctx, Purpose::SaveComparison);
+            return;
+        }
+        self.notices.failed(
+            "Nothing is compared yet. Press C to compare two strategies, or Ctrl+Shift+S to save \
+             the picture alone.",
+        );
     }
 
     /// Loads a reference from a path.

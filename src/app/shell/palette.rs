@@ -50,7 +50,7 @@ impl Palette {
         ui.set_width(SIZE.x);
         let moved = self.moved(ui);
         let edit = TextEdit::singleline(&mut self.text)
-            .hint_text("Type a few letters, then Enter")
+            .hint_text("Type a few letters, then press Enter")
             .desired_width(f32::INFINITY);
         let field = ui.add(edit).accessible_name("Command");
         if !std::mem::replace(&mut self.shown, true) {
@@ -63,7 +63,7 @@ impl Palette {
         let found = found(&self.text);
         self.chosen = self.chosen.saturating_add_signed(moved).min(found.len().saturating_sub(1));
         if found.is_empty() {
-            ui.label(RichText::new("No command has these letters.").color(color::TEXT_DIM));
+            ui.label(RichText::new("No command matches.").color(color::TEXT_DIM));
         }
         let mut clicked = None;
         ScrollArea::vertical().max_height(SIZE.y).auto_shrink([false, true]).show(ui, |ui| {
@@ -111,8 +111,7 @@ fn found(text: &str) -> Vec<Command> {
             () => None,
         }
     };
-    let mut ranked: Vec<(i32, Command)> = Command::ALL
-        .into_iter()
+    let mut ranked: Vec<(i32, Command)> = Command::all()
         .filter(|command| *command != Command::Palette)
         .filter_map(|command| rank(command).map(|rank| (rank, command)))
         .collect();
@@ -125,8 +124,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn letters_find_commands() {
-        assert_eq!(found("").len(), Command::ALL.len() - 1, "all but the palette itself");
+    fn every_command_is_found_by_its_name_and_some_by_a_few_letters() {
+        assert_eq!(found("").len(), Command::all().count() - 1, "all but the palette itself");
+        for command in Command::all().filter(|command| *command != Command::Palette) {
+            assert_eq!(found(command.text()).first(), Some(&command), "{command:?}");
+        }
         assert_eq!(found("undo")[0], Command::Undo);
         assert_eq!(found("PNG save")[0], Command::SavePng);
         assert_eq!(found("  next tone")[0], Command::NextToneCurve);

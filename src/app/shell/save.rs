@@ -97,7 +97,7 @@ impl Saver {
             Err(mpsc::TryRecvError::Empty) => true,
             Err(mpsc::TryRecvError::Disconnected) => {
                 let name = save.path.display().to_string();
-                let reason = "the save broke off; try again, or somewhere else";
+                let reason = "saving was interrupted; try again, or save elsewhere";
                 ended.push((save.path.clone(), Err(Error::invalid(name, "", reason))));
                 false
             }

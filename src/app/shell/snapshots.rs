@@ -6,7 +6,6 @@ use std::sync::Arc;
 use egui::{Context, Ui};
 
 use super::app::App;
-use crate::app::command::Command;
 use crate::app::compare::second_side::StoredSide;
 use crate::app::document::Side;
 use crate::app::jobs::dialogs::Purpose;
@@ -62,29 +61,12 @@ impl App {
         self.snapshots.picture().or_else(|| self.engine.picture())
     }
 
-    /// Carries out one of the commands about snapshots; whether it was one.
-    pub(super) fn execute_stored(&mut self, ctx: &Context, command: Command) -> bool {
-        match command {
-            Command::KeepSnapshot => self.snapshots.wants_keep = true,
-            Command::PreviousSnapshot => self.snapshots.strip.show_previous(),
-            Command::NextSnapshot if self.compare.versus.is_some() && self.is_last_shown() => {}
-            Command::NextSnapshot => self.snapshots.strip.show_next(),
-            // The key also closes what is open in front.
-            Command::LivePicture if ctx.any_popup_open() => {}
-            Command::LivePicture => self.leave(ctx),
-            Command::CompareAsA => self.set_against_live(Side::A),
-            Command::CompareAsB => self.set_against_live(Side::B),
-            Command::Compare if self.compare.versus.is_some() => self.snapshots.strip.show(None),
-            Command::SwapSides if self.compare.versus.is_some() => {
-                self.compare.versus = self.compare.versus.map(Side::other);
-            }
-            Command::ContinueSnapshot => self.go_on_from_shown(),
-            Command::DeleteSnapshot => self.snapshots.delete(),
-            Command::UndoDelete => self.snapshots.undo_delete(),
-            Command::FoldStrip => self.snapshots.strip.toggle(),
-            _ => return false,
+    /// Shows the snapshot after the one shown. Past the last one comes the live picture, except
+    /// where both are compared and the live one is in sight already.
+    pub(super) fn show_next_snapshot(&mut self) {
+        if self.compare.versus.is_none() || !self.is_last_shown() {
+            self.snapshots.strip.show_next();
         }
-        true
     }
 
     fn is_last_shown(&self) -> bool {
@@ -96,10 +78,11 @@ impl App {
 
     /// Compares the snapshot shown, as that side, with the live picture. What two strategies were
     /// compared before goes on with the one that was edited.
-    fn set_against_live(&mut self, side: Side) {
+    pub(super) fn set_against_live(&mut self, side: Side) {
         if self.snapshots.strip.shown().is_none() {
             self.notices.failed(
-                "There is no snapshot to compare with: K keeps one, the left arrow flips to it.",
+                "No snapshot is shown to compare with. Press K to keep one and the left arrow to \
+                 show it.",
             );
             return;
         }
@@ -130,7 +113,7 @@ impl App {
         self.snapshots.strip.wants_variance = measures;
     }
 
-    fn go_on_from_shown(&mut self) {
+    pub(super) fn go_on_from_shown(&mut self) {
         let shown = self.snapshots.strip.shown_item();
         if let Some(file) = shown.and_then(|item| self.snapshots.file(item)) {
             self.open_or_ask(&file.to_string_lossy());

@@ -27,12 +27,12 @@ type Card = (&'static str, &'static str, &'static [u8]);
 const CARDS: [Card; 7] = [
     (
         "torch",
-        "A torch that burns behind smoke",
+        "A torch burning behind smoke",
         include_bytes!("../../../assets/thumbnails/torch.png"),
     ),
     (
         "campfire",
-        "A wide fire with its smoke, at dusk",
+        "A wide fire and its smoke, at dusk",
         include_bytes!("../../../assets/thumbnails/campfire.png"),
     ),
     (

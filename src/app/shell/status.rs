@@ -1,4 +1,4 @@
-//! The status line: how far the picture is, what it costs, how it is shown, what is under the
+//! The status line: progress and cost of the picture, display, zoom and the pixel under the
 //! pointer.
 
 use egui::{Align, Button, DragValue, Layout, RichText, Ui};
@@ -47,7 +47,7 @@ pub fn show(ui: &mut Ui, panel: &mut StatusLine<'_>) {
     let (engine, viewport, snapshots) = (panel.engine, panel.viewport, panel.snapshots);
     ui.horizontal_centered(|ui| {
         let (text, help) = if engine.paused() {
-            ("Resume", "Go on sampling.")
+            ("Resume", "Resume sampling.")
         } else {
             ("Pause", "Stop sampling and keep the picture.")
         };
@@ -66,7 +66,7 @@ pub fn show(ui: &mut Ui, panel: &mut StatusLine<'_>) {
             None => {
                 let opening = engine.opening().is_some() || engine.built().is_some();
                 let text =
-                    if opening { "Waiting for the first picture …" } else { "Nothing is open." };
+                    if opening { "Waiting for the first picture…" } else { "Nothing is open." };
                 ui.weak(text);
             }
         }
@@ -89,8 +89,8 @@ pub fn show(ui: &mut Ui, panel: &mut StatusLine<'_>) {
 /// A picture that will never be quite right says so; of two, which one it is.
 fn bias(ui: &mut Ui, panel: &StatusLine<'_>) {
     if let Some(text) = panel::bias(&panel.editor.document, panel.second_side) {
-        let help = "Ray marching is on (Strategy, Advanced): this picture is not quite right, and \
-                    more samples will not mend that.";
+        let help = "Ray marching is on (Strategy, Advanced): the picture converges to a slightly \
+                    different result; more samples do not change that.";
         ui.label(RichText::new(text).color(color::WARNING)).on_hover_text(help);
     }
 }
@@ -99,13 +99,13 @@ fn bias(ui: &mut Ui, panel: &StatusLine<'_>) {
 fn snapshot_figures(ui: &mut Ui, item: &StripItem) {
     let record = &item.record;
     if item.picture().is_none() {
-        ui.label(RichText::new(format!("Reading {} …", record.name)).color(color::ACCENT));
+        ui.label(RichText::new(format!("Reading {}…", record.name)).color(color::ACCENT));
         return;
     }
     let spp = samples(record.spp);
-    let text = RichText::new(format!("Stored: {}, {spp} spp", record.name)).color(color::ACCENT);
+    let text = RichText::new(format!("Snapshot: {}, {spp} spp", record.name)).color(color::ACCENT);
     ui.add(egui::Label::new(text).truncate())
-        .on_hover_text("A snapshot, not the picture that is being rendered. Escape goes back.");
+        .on_hover_text("A snapshot is shown instead of the live picture. Press Escape to go back.");
 }
 
 fn progress(ui: &mut Ui, stats: &RenderStats, engine: &LiveRender, turns: usize) {
@@ -116,23 +116,22 @@ fn progress(ui: &mut Ui, stats: &RenderStats, engine: &LiveRender, turns: usize)
         Some(noise) => percent(noise),
         None => "–".to_owned(),
     };
-    let help = "Noise: the standard error of the picture relative to its brightness. It halves \
-                when the samples quadruple.";
+    let help = "Relative standard error of the picture. Four times the samples halve it.";
     figure(ui, &noise, "% noise", help, 42.0);
     let rate = if stats.seconds > 0.0 { stats.tracking_steps as f64 / stats.seconds } else { 0.0 };
-    let help = "Tentative collisions a second: steps through the volume, real and null.";
+    let help = "Tentative collisions per second: tracking steps through the volume, real and null.";
     figure(ui, &count(rate), "collisions/s", help, 50.0);
     if stats.non_finite > 0 {
         let text = format!("{} samples dropped", stats.non_finite);
         ui.label(RichText::new(text).color(color::WARNING))
-            .on_hover_text("Samples that were not finite numbers; they count as black.");
+            .on_hover_text("Samples that were not finite numbers and count as black.");
     }
     let state = match (engine.paused(), stats.finished) {
         (true, _) => "paused",
-        (false, false) if engine.held() => "waiting for the trial",
+        (false, false) if engine.held() => "paused while strategies are tried",
         (false, true) => "finished",
         (false, false) if engine.picture().is_some_and(|picture| picture.focus.is_some()) => {
-            "rectangle only"
+            "region only"
         }
         (false, false) => return ending(ui, stats, engine, turns),
     };
@@ -147,7 +146,7 @@ fn ending(ui: &mut Ui, stats: &RenderStats, engine: &LiveRender, turns: usize) {
     let Some(left) = seconds_left(stats, wanted).filter(|_| is_whole) else { return };
     let left = left * turns.max(1) as f64;
     let text = RichText::new(format!("{} left", time_left(left))).color(color::TEXT_DIM);
-    ui.label(text).on_hover_text(format!("Until each pixel has {wanted} samples."));
+    ui.label(text).on_hover_text(format!("Time left until each pixel has {wanted} samples."));
 }
 
 /// At the pace so far; none before there is one, at the end, and where there is no end.
@@ -176,7 +175,7 @@ fn figure(ui: &mut Ui, value: &str, unit: &str, help: &str, width: f32) {
 fn zoom(ui: &mut Ui, scale: f32) {
     let text = format!("{:.0} %", 100.0 * scale);
     ui.label(RichText::new(text).color(color::TEXT_DIM))
-        .on_hover_text("Zoom of the picture. Ctrl and the wheel zoom to pixels; Home fits it.");
+        .on_hover_text("Zoom of the picture. Ctrl+wheel zooms to pixels; Home fits the picture.");
 }
 
 fn probe(ui: &mut Ui, viewport: &Viewport) {
@@ -187,7 +186,7 @@ fn probe(ui: &mut Ui, viewport: &Viewport) {
         let UVec2 { x, y } = probe.pixel;
         let text = format!("{x:>4}, {y:<4} {:>9} {unit}", channel(number));
         ui.label(RichText::new(text).monospace().color(color::TEXT))
-            .on_hover_text("The pixel under the pointer and its number in the map that is shown.");
+            .on_hover_text("The pixel under the pointer and its value in the layer or map shown.");
         return;
     }
     let [r, g, b, _] = probe.value;
@@ -200,7 +199,7 @@ fn probe(ui: &mut Ui, viewport: &Viewport) {
         channel(b)
     );
     ui.label(RichText::new(text).monospace().color(color::TEXT))
-        .on_hover_text("The pixel under the pointer and its linear red, green and blue.");
+        .on_hover_text("The pixel under the pointer and its linear red, green and blue values.");
 }
 
 /// The unit of the numbers of a layer.
@@ -238,7 +237,7 @@ fn display(ui: &mut Ui, panel: &mut StatusLine<'_>) {
     let tone = &mut panel.editor.document.tone;
     let button = Button::new(curve_name(*tone)).min_size(egui::vec2(58.0, 0.0));
     let help = "Tone curve: filmic rolls bright fire off softly, AgX more softly, linear clips it. \
-                For display and PNG only. Click for the next.  [T]";
+                For display and PNG only. Click for the next one.  [T]";
     if ui.add(button).on_hover_text(help).clicked() {
         tone.curve = tone.curve.next();
         edit = Some("tone curve");
@@ -249,16 +248,17 @@ fn display(ui: &mut Ui, panel: &mut StatusLine<'_>) {
         .custom_formatter(|value, _| format!("{value:+.1}"))
         .custom_parser(finite);
     let response = ui.add_sized([44.0, space::ROW_HEIGHT], field).accessible_name("Exposure");
-    let help = "Exposure in stops, for display and PNG only. Drag, click to type, E and Shift+E \
-                for half stops, A for what suits the picture.";
+    let help = "Exposure in stops, for display and PNG only. Drag, or click to type. E and Shift+E \
+                change it by half a stop, A is auto exposure.";
     if response.on_hover_text(help).changed() {
         edit = Some("exposure");
     }
     ui.label(RichText::new("exposure").color(color::TEXT_DIM));
     if let Some(layer) = panel.layer {
         let text = RichText::new(format!("Layer: {}", layer.name())).color(color::ACCENT);
-        ui.label(text)
-            .on_hover_text("Shown in place of the picture. Display, in the panel, has it.");
+        ui.label(text).on_hover_text(
+            "This layer is shown in place of the picture. Choose another under Display.",
+        );
     }
     if let Some(name) = edit {
         panel.editor.name_edit(name);

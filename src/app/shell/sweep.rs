@@ -29,7 +29,7 @@ impl App {
     pub(super) fn sweep_row(&mut self, ui: &mut Ui) {
         let Some(progress) = self.sweep.progress() else { return };
         let (what, fraction) = results::progress(&progress);
-        let help = "Stop trying and show what is known so far.";
+        let help = "End the sweep and show the results so far.";
         let row = egui::Panel::bottom("sweep").frame(theme::panel_frame());
         if row.show(ui, |ui| bars::progress(ui, &what, fraction, help)).inner {
             self.sweep.cancel();

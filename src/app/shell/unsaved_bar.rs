@@ -37,12 +37,12 @@ pub fn ask(
         PendingAction::Open(_) => "Open without saving",
     };
     let buttons = [
-        ("Save scene…", UnsavedAnswer::Save, "Save every setting as a scene file first."),
-        (discard, UnsavedAnswer::Discard, "The changes are lost."),
-        ("Cancel", UnsavedAnswer::Stay, "Go on working on it."),
+        ("Save scene…", UnsavedAnswer::Save, "Save all settings as a scene file first."),
+        (discard, UnsavedAnswer::Discard, "Discard the changes."),
+        ("Cancel", UnsavedAnswer::Stay, "Keep editing."),
     ];
     ui.horizontal_wrapped(|ui| {
-        let text = format!("{title} has changes that are not saved.");
+        let text = format!("{title} has unsaved changes.");
         ui.label(RichText::new(text).color(color::WARNING));
         let mut answer = None;
         for (text, says, help) in buttons {

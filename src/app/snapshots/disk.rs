@@ -284,7 +284,7 @@ fn blank(size: &[u32; 2]) -> Picture {
 
 /// Without a place nothing can be kept, and nothing else can be asked for.
 fn no_place(job: &DiskJob) -> Option<DiskReport> {
-    let text = "There is no folder to keep snapshots in. Set FLAMBEAU_DATA to one.";
+    let text = "There is no folder for snapshots. Set FLAMBEAU_DATA to one.";
     match job {
         DiskJob::Keep(_) => Some(DiskReport::NotKept(text.to_owned())),
         DiskJob::List => Some(DiskReport::Listed(Vec::new(), Vec::new())),

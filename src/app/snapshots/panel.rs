@@ -54,7 +54,7 @@ pub fn show(ui: &mut Ui, snapshots: &mut Snapshots, live: Option<&Arc<Picture>>)
                 response.context_menu(|ui| context_menu(ui, &mut commands));
             }
             for _ in 0..snapshots.keeping() {
-                plain_card(ui, "Keeping …", "", false);
+                plain_card(ui, "Keeping…", "", false);
             }
             let figures = live.map_or_else(String::new, |live| {
                 figures(live.stats.samples_per_pixel, live.stats.noise)
@@ -88,11 +88,11 @@ fn head(ui: &mut Ui, snapshots: &mut Snapshots, commands: &mut Vec<Command>) {
                 _ => format!("{count} snapshots, {}", size_in_words(bytes)),
             };
             ui.label(RichText::new(text).color(color::TEXT_STRONG));
-            let help = "K keeps the picture, the left and right arrows flip through.";
+            let help = "K keeps the picture, the left and right arrows flip through the snapshots.";
             ui.add(egui::Label::new(RichText::new(help).color(color::TEXT_DIM)).truncate());
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-            button(ui, Command::FoldStrip, "Fold", commands);
+            button(ui, Command::FoldStrip, "Hide", commands);
             if snapshots.strip.last_deleted().is_some() {
                 button(ui, Command::UndoDelete, Command::UndoDelete.text(), commands);
             }
@@ -100,19 +100,19 @@ fn head(ui: &mut Ui, snapshots: &mut Snapshots, commands: &mut Vec<Command>) {
     });
 }
 
-/// Name and note of the snapshot shown, and what can be done with it; `buttons` is the room that the
-/// buttons take.
+/// Name and note of the snapshot shown, and what can be done with it; `buttons` is the room that
+/// the buttons take.
 fn details(ui: &mut Ui, item: &mut StripItem, buttons: f32, commands: &mut Vec<Command>) {
     let name = TextEdit::singleline(&mut item.record.name).desired_width(NAME_WIDTH);
-    ui.add(name).accessible_name("Snapshot name").on_hover_text("What this snapshot is called.");
+    ui.add(name).accessible_name("Snapshot name").on_hover_text("The name of this snapshot.");
     let width = (ui.available_width() - buttons).clamp(60.0, 400.0);
     let note = TextEdit::singleline(&mut item.record.note).hint_text("note").desired_width(width);
-    let help = "A note to yourself. When snapshots take too much of the disk, those without a note \
-                go first.";
+    let help = "A note about this snapshot. When snapshots need too much disk space, those without \
+                a note are deleted first.";
     ui.add(note).accessible_name("Snapshot note").on_hover_text(help);
     button(ui, Command::CompareAsA, "Compare as A", commands);
     button(ui, Command::CompareAsB, "as B", commands);
-    button(ui, Command::ContinueSnapshot, "Go on from it", commands);
+    button(ui, Command::ContinueSnapshot, "Resume from this", commands);
     button(ui, Command::DeleteSnapshot, "Delete", commands);
 }
 
@@ -126,7 +126,7 @@ fn button(ui: &mut Ui, command: Command, text: &str, commands: &mut Vec<Command>
 
 fn context_menu(ui: &mut Ui, commands: &mut Vec<Command>) {
     for (command, text) in [
-        (Command::ContinueSnapshot, "Go on from it"),
+        (Command::ContinueSnapshot, "Resume from this"),
         (Command::CompareAsA, Command::CompareAsA.text()),
         (Command::CompareAsB, Command::CompareAsB.text()),
         (Command::SaveExr, Command::SaveExr.text()),

@@ -53,7 +53,7 @@ impl Record {
 
 /// The strategy in a word or two.
 pub fn strategy(settings: &Settings) -> String {
-    let preset = settings.strategy.preset().map_or("mixed", |preset| preset.name());
+    let preset = settings.strategy.preset().map_or("custom", |preset| preset.name());
     match settings.strategy.is_biased() {
         true => format!("{preset}, biased"),
         false => preset.to_owned(),

@@ -231,7 +231,7 @@ fn size(path: &Path) -> Result<u64> {
 
 fn read_record(path: &Path) -> Result<Record> {
     if size(path)? > LONGEST_RECORD {
-        let reason = "too long for what is written down beside a snapshot";
+        let reason = "too long for the record of a snapshot";
         return Err(Error::invalid(path.display().to_string(), "", reason));
     }
     let text = fs::read_to_string(path).map_err(|e| Error::io(path, e))?;

@@ -61,7 +61,9 @@ impl BarAxis {
             let at = pos2(x, rect.center().y);
             ui.painter().text(at, Align2::CENTER_CENTER, text, font.clone(), color::TEXT_DIM);
         }
-        response.on_hover_text("How many times as fast as baseline it reaches the same noise.");
+        response.on_hover_text(
+            "Speed relative to baseline: how many times sooner the same noise is reached.",
+        );
     }
 
     /// The bar of an entry.
@@ -97,7 +99,7 @@ impl BarAxis {
 fn spoken(speed_up: &SpeedUp) -> String {
     let [low, high] = speed_up.interval().map(|end| rounded(end, 2));
     let ratio = rounded(speed_up.ratio, 2);
-    format!("{ratio} times as fast as baseline, with 95 % between {low} and {high}")
+    format!("{ratio} times as fast as baseline (95 % confidence: {low} to {high})")
 }
 
 #[cfg(test)]

@@ -229,7 +229,7 @@ impl Running {
                 Ok(SweepReport::Ended(ended)) => return Some(ended),
                 Err(mpsc::TryRecvError::Empty) => return None,
                 Err(mpsc::TryRecvError::Disconnected) => {
-                    let reason = "trying the strategies broke off; try again";
+                    let reason = "the sweep was interrupted; sweep again";
                     return Some(Err(Error::invalid("", "", reason)));
                 }
             }

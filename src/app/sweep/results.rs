@@ -1,4 +1,4 @@
-//! The strategies as a sweep ranked them: bars, times, and a button that takes one over.
+//! The results of a sweep: strategies ranked, with bars, times, and a button that uses one.
 
 use std::time::Duration;
 
@@ -26,18 +26,19 @@ const TIME: f32 = 92.0;
 pub fn progress((progress, left): &(SweepProgress, Option<Duration>)) -> (String, f32) {
     match progress {
         SweepProgress::Preparing(done, all) => {
-            ("Trying strategies: preparing".to_owned(), *done as f32 / (*all).max(1) as f32)
+            ("Sweep: preparing".to_owned(), *done as f32 / (*all).max(1) as f32)
         }
         SweepProgress::Rendering(part) => {
             let left = left.map_or_else(String::new, |left| {
-                format!(": {} left", time_left(left.as_secs_f64()))
+                format!(", {} left", time_left(left.as_secs_f64()))
             });
-            (format!("Trying strategies{left}"), *part as f32)
+            (format!("Sweep: trying strategies{left}"), *part as f32)
         }
     }
 }
 
-/// Shows the results over `area`, while they are open. What is asked below the picture stays in sight.
+/// Shows the results over `area`, while they are open. What is asked below the picture stays in
+/// sight.
 pub fn show(
     ctx: &Context,
     area: Rect,
@@ -49,7 +50,7 @@ pub fn show(
         return;
     }
     let mut open = sweep.open;
-    Window::new("Strategies on this shot")
+    Window::new("Sweep of all strategies")
         .open(&mut open)
         .resizable(false)
         .collapsible(false)
@@ -78,7 +79,7 @@ fn contents(ui: &mut Ui, results: &Results, editor: &mut Editor) {
     }
     let stale = results.is_stale(&editor.document.settings);
     for (is_so, text) in [
-        (stale, "The shot or a finer choice was edited since: try again."),
+        (stale, "The shot or an advanced setting has changed since: sweep again."),
         (results.interrupted, "Cancelled before all strategies had their time."),
     ] {
         if is_so {
@@ -101,9 +102,9 @@ fn entries(ui: &mut Ui, ranking: &Ranking, editor: &mut Editor) {
         heading(
             ui,
             "time",
-            "Time for the same noise as a share of baseline's, with its standard error.",
+            "Time to the same noise relative to baseline, with its standard error.",
         );
-        heading(ui, "noise", "The standard error of the picture after that time.");
+        heading(ui, "noise", "Relative standard error of the picture at the end of the sweep.");
         ui.end_row();
         for (number, entry) in ranking.entries.iter().enumerate() {
             let is_best = ranking.leave_on == Some(number);
@@ -129,10 +130,10 @@ fn use_button(ui: &mut Ui, entry: &RankedTrial, editor: &mut Editor) {
     let response = ui
         .add_enabled(!in_use && !refused, button)
         .accessible_name(format!("{text}: {name}"))
-        .on_hover_text(format!("Set the toggles of the edited side to {name}. Undo takes it back."))
+        .on_hover_text(format!("Set the toggles of the edited side to {name}. This can be undone."))
         .on_disabled_hover_text(match in_use {
-            true => "These are the toggles of the edited side.",
-            false => "It cannot be rendered with the finer choices as they are.",
+            true => "The edited side has these toggles.",
+            false => "This strategy cannot be rendered with the current advanced settings.",
         });
     if response.clicked() {
         *strategy = trial.strategy;
@@ -163,13 +164,14 @@ fn worths(ui: &mut Ui, ranking: &Ranking) {
         heading(ui, "toggle", "");
         heading(
             ui,
-            "alone, of baseline's time",
-            "Time for the same noise as a share of baseline's: below 1 it helps.",
+            "alone, relative to baseline",
+            "Time to the same noise with this toggle alone, relative to baseline: below 1 it \
+             helps.",
         );
         heading(
             ui,
-            "left out, of full's time",
-            "Time for the same noise over full's: above 1 it is missed.",
+            "left out, relative to full",
+            "Time to the same noise without this toggle, relative to full: above 1 it is missed.",
         );
         ui.end_row();
         for Worth { toggle, alone, left_out } in &ranking.worths {
@@ -190,7 +192,7 @@ fn gain(ui: &mut Ui, gain: &Gain) {
                 let text = RichText::new("no effect").color(color::TEXT_DIM);
                 ui.label(text).on_hover_text(*why)
             }
-            Gain::Unknown => ui.label(RichText::new("not known").color(color::TEXT_DIM)),
+            Gain::Unknown => ui.label(RichText::new("unknown").color(color::TEXT_DIM)),
         }
     });
 }
@@ -198,7 +200,7 @@ fn gain(ui: &mut Ui, gain: &Gain) {
 /// How long each strategy is tried, and the button that does it again.
 fn again(ui: &mut Ui, sweep: &mut Sweep, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
-        let help = "CPU time that each strategy gets. Four times the time halves the errors.";
+        let help = "CPU time for each strategy. Four times the time halves the errors.";
         let label = row_label(ui, "Time for each", help);
         let field = DragValue::new(&mut sweep.seconds)
             .range(0.1..=600.0)
@@ -211,8 +213,8 @@ fn again(ui: &mut Ui, sweep: &mut Sweep, commands: &mut Vec<Command>) {
             .on_hover_text(help);
         let key = key_of(ui, Command::Sweep);
         let help = format!("{}  [{key}]", Command::Sweep.tooltip());
-        let button = ui.add_enabled(!sweep.is_running(), Button::new("Try again"));
-        if button.on_hover_text(help).on_disabled_hover_text("It runs.").clicked() {
+        let button = ui.add_enabled(!sweep.is_running(), Button::new("Sweep again"));
+        if button.on_hover_text(help).on_disabled_hover_text("A sweep is running.").clicked() {
             commands.push(Command::Sweep);
         }
     });

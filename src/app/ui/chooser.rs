@@ -42,7 +42,7 @@ fn field(ui: &mut Ui, what: &str, text: &mut String) {
 fn list(ui: &mut Ui, id: Id, names: &[String], memory: &mut Memory) {
     let found = matching(names, &memory.text);
     if found.is_empty() {
-        ui.weak("None has these letters.");
+        ui.weak("No name contains these letters.");
     }
     let height = ui.spacing().interact_size.y;
     let area = ScrollArea::vertical().id_salt(id).max_height(HEIGHT).auto_shrink([false, true]);

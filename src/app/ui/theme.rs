@@ -72,9 +72,9 @@ pub mod space {
     /// Between a panel's edge and its contents.
     pub const PANEL: i8 = 12;
     /// Width of the panel column.
-    pub const COLUMN: f32 = 324.0;
+    pub const COLUMN: f32 = 352.0;
     /// Width of the label in a row of settings.
-    pub const LABEL: f32 = 104.0;
+    pub const LABEL: f32 = 140.0;
     /// Width of the number in a row of settings.
     pub const NUMBER: f32 = 68.0;
     /// Width and height of a histogram beside the name of a grid.

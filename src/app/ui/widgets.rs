@@ -27,6 +27,11 @@ pub fn key_help(path: &str) -> String {
     format!("{}\n\n{}{unit}", key.help.trim(), key.path.replace(".N.", "."))
 }
 
+/// The help of a key that has half of what is shown.
+pub fn doubled_help(path: &str) -> String {
+    format!("The full size; the scene file has half of it. {}", key_help(path))
+}
+
 /// The key of a command, as menus write it.
 pub fn key_of(ui: &Ui, command: Command) -> String {
     ui.ctx().format_shortcut(&command.shortcut())
@@ -114,15 +119,27 @@ impl Number<'_> {
         self.show_as(ui, value, &help, limits)
     }
 
-    /// The same for a number that is none of the scene's: its help, and between what it may be typed.
+    /// The same with a help of its own and the limits between which the number may be typed.
     pub fn show_as(self, ui: &mut Ui, value: &mut f32, help: &str, limits: [f64; 2]) -> bool {
+        self.show_beside(ui, value, (help, limits), (0.0, |_: &mut Ui, _: &mut f32| {}))
+    }
+
+    /// The same with something more behind the number, which takes that width.
+    pub fn show_beside(
+        self,
+        ui: &mut Ui,
+        value: &mut f32,
+        (help, limits): (&str, [f64; 2]),
+        (width, beside): (f32, impl FnOnce(&mut Ui, &mut f32)),
+    ) -> bool {
         let before = *value;
-        let help = format!("{help}\n\nDouble-click for {}.", self.reset);
+        let help = format!("{help}\n\nDouble-click to reset to {}.", self.reset);
         ui.horizontal(|ui| {
             let label = row_label(ui, self.name, &help);
-            let slider = self.slider(ui, value).on_hover_text(&help).labelled_by(label.id);
+            let slider = self.slider(ui, value, width).on_hover_text(&help).labelled_by(label.id);
             let field = self.field(ui, value, limits).labelled_by(label.id);
-            field.on_hover_text("Click to type, drag to change; with Shift more finely.");
+            field.on_hover_text("Click to type, or drag to change; hold Shift for fine steps.");
+            beside(ui, value);
             if is_reset(ui, &[&label, &slider]) {
                 *value = self.reset;
             }
@@ -130,10 +147,11 @@ impl Number<'_> {
         *value != before
     }
 
-    fn slider(&self, ui: &mut Ui, value: &mut f32) -> Response {
-        let gaps = 2.0 * ui.spacing().item_spacing.x;
+    /// The slider, which leaves room for the number and for `beside`.
+    fn slider(&self, ui: &mut Ui, value: &mut f32, beside: f32) -> Response {
+        let gaps = if beside > 0.0 { 3.0 } else { 2.0 } * ui.spacing().item_spacing.x;
         ui.spacing_mut().slider_width =
-            (ui.available_width() - space::NUMBER - gaps).clamp(40.0, 400.0);
+            (ui.available_width() - space::NUMBER - beside - gaps).clamp(30.0, 400.0);
         let smallest = f64::from(self.soft.end() / 1e4).max(1e-6);
         ui.add(
             Slider::new(value, self.soft.clone())
@@ -210,13 +228,30 @@ pub struct Vector<'a> {
 }
 
 impl Vector<'_> {
-    /// Shows the row; whether any number changed.
+    /// Shows the row; whether any number changed. Where the key has half an edge, the row has the
+    /// whole of it.
     pub fn show(self, ui: &mut Ui, value: &mut [f32; 3]) -> bool {
+        if !self.key.contains(".half_") {
+            let help = key_help(self.key);
+            return self.show_as(ui, value, &help);
+        }
+        let mut whole = value.map(|half| 2.0 * half);
+        let reset = self.reset.map(|half| 2.0 * half);
+        let help = doubled_help(self.key);
+        let changed = Self { reset, ..self }.show_as(ui, &mut whole, &help);
+        if changed {
+            *value = whole.map(|edge| 0.5 * edge);
+        }
+        changed
+    }
+
+    /// The same with a help of its own.
+    pub fn show_as(self, ui: &mut Ui, value: &mut [f32; 3], help: &str) -> bool {
         let before = *value;
         let key = keys::find(self.key);
         let [low, high] = key.map_or([f64::MIN, f64::MAX], |key| key.limits);
         let [x, y, z] = self.reset.map(|value| significant(f64::from(value)));
-        let help = format!("{}\n\nDouble-click the name for {x}, {y}, {z}.", key_help(self.key));
+        let help = format!("{}\n\nDouble-click the name to reset to {x}, {y}, {z}.", help);
         ui.horizontal(|ui| {
             let label = row_label(ui, self.name, &help);
             if is_reset(ui, &[&label]) {
@@ -275,14 +310,15 @@ pub fn is_reset(ui: &Ui, parts: &[&Response]) -> bool {
 }
 
 /// How strong a color is and, in a second row, its hue; whether either changed.
-pub fn color_rows(ui: &mut Ui, number: Number<'_>, value: &mut Color) -> bool {
+/// `name` is that of the second row.
+pub fn color_rows(ui: &mut Ui, number: Number<'_>, name: &str, value: &mut Color) -> bool {
     let before = *value;
-    let (name, help) = (format!("{} tint", number.name), key_help(number.key));
+    let help = key_help(number.key);
     let mut strong = strength(*value);
     if number.show(ui, &mut strong) {
         *value = scaled(*value, strong);
     }
-    if tint(ui, &name, &help, value) {
+    if tint(ui, name, &help, value) {
         *value = scaled(*value, strong);
     }
     *value != before
@@ -346,7 +382,7 @@ where
         explained.iter().position(|(name, _)| value == Some((*name).into()))
     };
     let (chosen, refused) = (index_of(value), refused.as_ref().and_then(index_of));
-    let names: Vec<String> = explained.iter().map(|(name, _)| capitalized(name)).collect();
+    let names: Vec<String> = explained.iter().map(|(name, _)| choice_name(name)).collect();
     let choices: Vec<(&str, &str)> = std::iter::zip(&names, &explained)
         .map(|(name, (_, help))| (name.as_str(), *help))
         .collect();
@@ -367,7 +403,18 @@ where
     })
 }
 
-/// A name of the scene file as a button says it.
+/// A choice of the scene file as buttons name it.
+fn choice_name(name: &str) -> String {
+    match name {
+        "path" => "Path tracing".to_owned(),
+        "march" => "Ray marching".to_owned(),
+        "mis" => "MIS".to_owned(),
+        "null" => "Null-collision".to_owned(),
+        name => capitalized(name),
+    }
+}
+
+/// A name with a capital letter.
 pub fn capitalized(name: &str) -> String {
     let mut letters = name.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())

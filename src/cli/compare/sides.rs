@@ -1,8 +1,8 @@
-//! What `--a` and `--b` say: a strategy in words.
+//! The values of `--a` and `--b`: strategies in words.
 
 use std::str::FromStr;
 
-use crate::cli::scene_source::quoted;
+use crate::cli::values::quoted;
 use crate::error::{Error, Result};
 use crate::scene::{self, Overrides, Settings};
 use crate::transport::strategy::Preset;

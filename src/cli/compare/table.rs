@@ -1,19 +1,17 @@
 //! The table of a comparison, for people and for programs.
 
 use std::fmt::Write as _;
-use std::io::Write as _;
 use std::path::Path;
 
 use serde::Serialize;
 
 use super::errors::Errors;
+use crate::cli::outputs::write_text;
+use crate::cli::speed_up_row::SpeedUpRow;
 use crate::cli::stats::Spent;
 use crate::error::{Error, Result};
-use crate::files;
 use crate::format::{percent, rounded};
-use crate::render::compare::{
-    ALARM, Agreement, Difference, FEWEST_SAMPLES, SideFigures, SpeedUp, Verdict,
-};
+use crate::render::compare::{ALARM, Agreement, Difference, FEWEST_SAMPLES, SideFigures, Verdict};
 use crate::render::estimate::gray;
 use crate::render::side_by_side::RenderedSide;
 use crate::transport::strategy::Strategy;
@@ -40,7 +38,7 @@ pub struct CompareTable {
 pub struct SideRow {
     #[serde(skip)]
     name: &'static str,
-    /// What the command line said.
+    /// The strategy as the command line names it.
     choice: String,
     strategy: Strategy,
     spp: f64,
@@ -131,23 +129,6 @@ impl SideRow {
             self.errors.map_or_else(String::new, |errors| format!("{:.3e}", errors.rel_mse)),
             self.errors.map_or_else(String::new, |errors| rounded(errors.flip, 3)),
         ]
-    }
-}
-
-/// How much faster B is than A.
-#[derive(Debug, Serialize)]
-pub struct SpeedUpRow {
-    ratio: f64,
-    standard_error: f64,
-    /// The ends of the interval that holds the ratio with 95 %.
-    low: f64,
-    high: f64,
-}
-
-impl From<&SpeedUp> for SpeedUpRow {
-    fn from(speed_up: &SpeedUp) -> Self {
-        let [low, high] = speed_up.interval();
-        Self { ratio: speed_up.ratio, standard_error: speed_up.standard_error(), low, high }
     }
 }
 
@@ -274,12 +255,7 @@ impl CompareTable {
         let path = folder.join("table.json");
         let json = serde_json::to_string_pretty(self)
             .map_err(|e| Error::invalid(path.display().to_string(), "", e.to_string()))?;
-        put(&path, &format!("{json}\n"))?;
-        put(&folder.join("table.txt"), &self.text())
+        write_text(&path, &format!("{json}\n"))?;
+        write_text(&folder.join("table.txt"), &self.text())
     }
-}
-
-/// Writes a file of text.
-pub fn put(path: &Path, text: &str) -> Result<()> {
-    files::replace(path, |file| file.write_all(text.as_bytes()).map_err(|e| Error::io(path, e)))
 }

@@ -5,7 +5,8 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use crate::cli::compare::{SpeedUpRow, put};
+use crate::cli::outputs::write_text;
+use crate::cli::speed_up_row::SpeedUpRow;
 use crate::error::{Error, Result};
 use crate::format::{percent, rounded};
 use crate::render::compare::{SideFigures, SpeedUp};
@@ -31,7 +32,7 @@ pub struct SweepTable {
     remarks: Vec<String>,
     /// The strategies, the fastest first.
     ranking: Vec<SweepTableRow>,
-    /// What each toggle brings.
+    /// The worth of each toggle.
     toggles: Vec<ToggleRow>,
 }
 
@@ -60,7 +61,7 @@ struct SweepTableRow {
     cells: [String; COLUMNS.len()],
 }
 
-/// What a toggle brings.
+/// The worth of a toggle.
 #[derive(Debug, Serialize)]
 struct ToggleRow {
     toggle: &'static str,
@@ -137,8 +138,8 @@ impl SweepTable {
         let path = folder.join("table.json");
         let json = serde_json::to_string_pretty(self)
             .map_err(|e| Error::invalid(path.display().to_string(), "", e.to_string()))?;
-        put(&path, &format!("{json}\n"))?;
-        put(&folder.join("table.txt"), &self.text())
+        write_text(&path, &format!("{json}\n"))?;
+        write_text(&folder.join("table.txt"), &self.text())
     }
 }
 
@@ -168,7 +169,7 @@ impl SweepTableRow {
     }
 }
 
-/// What a line of the ranking says. A twin's figures are written where it was rendered.
+/// The cells of a line of the ranking. A twin's figures are written where it was rendered.
 fn cells(entry: &RankedTrial, leave_on: bool) -> [String; COLUMNS.len()] {
     let mark = if leave_on { "* " } else { "  " };
     let name = format!("{mark}{}", entry.trial.kind.name());
@@ -241,5 +242,5 @@ fn aligned(heads: &[&str], rows: &[&[String]]) -> String {
 /// The options that lead another command to the toggles of a strategy, each with a space before.
 pub fn toggles_in_words(strategy: &Strategy) -> String {
     let set = |toggle: Toggle| format!(" --set {}={}", toggle.key(), toggle.is_on(strategy));
-    Toggle::ALL.map(set).concat()
+    Toggle::all().map(set).collect()
 }

@@ -9,8 +9,7 @@ use super::Reference;
 use crate::image::exr::SnapshotHeader;
 use crate::render::Film;
 use crate::render::publish::resolve;
-use crate::render::synthetic::Uniform;
-use crate::transport::PixelSampler;
+use crate::render::synthetic::{Uniform, sample_of};
 
 /// A folder for one file.
 struct Place(tempfile::TempDir);
@@ -138,7 +137,7 @@ fn snapshot(path: &std::path::Path, size: UVec2) -> Film {
     let mut film = Film::new(size).unwrap();
     for (y, x) in (0..size.y).flat_map(|y| (0..size.x).map(move |x| (y, x))) {
         let pixel = UVec2::new(x, y);
-        (0..3).for_each(|sample| film.add(pixel, &Uniform::default().sample(pixel, sample)));
+        (0..3).for_each(|sample| film.add(pixel, &sample_of(&Uniform::default(), pixel, sample)));
     }
     crate::image::exr::write(path, &film, &SnapshotHeader::default()).unwrap();
     film

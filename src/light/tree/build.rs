@@ -2,7 +2,9 @@
 
 use glam::Vec3A;
 
-use super::{Cone, Emitter, LightNode, LightTree, NodeKind};
+use super::cone::Cone;
+use super::nodes::{LightNode, LightTree, NodeKind};
+use crate::light::emitter::Emitter;
 use crate::math::Aabb;
 
 /// Bins per axis that splits are tried between.
@@ -24,7 +26,7 @@ struct PlacedEmitter {
     cone: Cone,
 }
 
-/// What a set of emitters amounts to.
+/// The extent, power and directions of a set of emitters.
 #[derive(Clone, Copy)]
 struct EmitterSummary {
     count: usize,
@@ -34,6 +36,7 @@ struct EmitterSummary {
     cone: Option<Cone>,
 }
 
+/// Builds the hierarchy over `emitters`.
 pub(super) fn build(emitters: &[Emitter]) -> LightTree {
     let brightest = emitters.iter().map(intensity).fold(0.0, f32::max);
     let mut items: Vec<PlacedEmitter> = emitters

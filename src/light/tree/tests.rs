@@ -1,7 +1,7 @@
 use glam::UVec2;
 
 use super::*;
-use crate::math::PathRng;
+use crate::math::{Aabb, PathRng};
 
 fn random(rng: &mut PathRng, scale: f32) -> Vec3A {
     scale * (2.0 * Vec3A::new(rng.uniform(), rng.uniform(), rng.uniform()) - Vec3A::ONE)

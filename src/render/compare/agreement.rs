@@ -18,7 +18,7 @@ pub const FEWEST_SAMPLES: u32 = ACCUMULATORS as u32;
 /// Differences below this share of the brightness may come of rounding to `f32` along the path.
 pub(super) const ROUNDING: f64 = 1.0e-5;
 
-/// What a check says.
+/// The outcome of a check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     /// Some pixels have too few samples for one.
@@ -32,7 +32,7 @@ pub enum Verdict {
 /// The difference of two films over an area.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Difference {
-    /// Where.
+    /// The pixels that were looked at.
     pub area: Area,
     /// Mean gray of A and of B.
     pub means: [f64; 2],
@@ -43,7 +43,7 @@ pub struct Difference {
 }
 
 impl Difference {
-    /// Over one area with these sums; `all` are those of the whole films. `None` without pixels.
+    /// The difference over one area with these sums; `all` are those of the whole films. `None` without pixels.
     ///
     /// Means of many pixels are normal enough, but their variances are only estimated, and where
     /// few pixels make most of the noise not even well: Student's t with as many degrees of freedom
@@ -94,11 +94,11 @@ fn two_sided(distance: f64, freedom: f64) -> f64 {
 /// Whether two films show the same picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Agreement {
-    /// What the check says.
+    /// The outcome.
     pub verdict: Verdict,
-    /// Over the whole area; none where it has no pixel with a variance.
+    /// The difference over the whole area; none where it has no pixel with a variance.
     pub overall: Option<Difference>,
-    /// Over the block where a difference is least likely to be chance.
+    /// The difference over the block where one is least likely to be chance.
     pub worst: Option<Difference>,
     /// How many differences were looked at: each block, and all of them together.
     pub tests: usize,

@@ -1,13 +1,13 @@
 //! How much faster one setting is than another, and the sentence that says so.
 
-use super::SideFigures;
-use crate::format::rounded;
+use super::side_figures::SideFigures;
+use crate::format::{one_part_of, rough};
 use crate::render::estimate::FEWEST_FOR_VARIANCE;
 
 /// Standard errors on either side of an estimate that hold the truth with 95 %.
 const CONFIDENCE: f64 = 1.96;
 
-/// What is not known of the ratio of two CPU times, as a share of it: the same work repeats to about
+/// Relative error of the ratio of two CPU times: the same work repeats to about
 /// this, also when both sides take turns.
 const TIMING_ERROR: f64 = 0.03;
 
@@ -71,12 +71,12 @@ impl SpeedUp {
             return percents(factor, spread);
         }
         if spread <= 1.1 {
-            format!("1/{}", rounded(factor, 2))
+            one_part_of(factor)
         } else if spread <= 1.6 {
-            format!("about 1/{}", rounded(round_number(factor), 2))
+            format!("about {}", one_part_of(rough(factor)))
         } else {
-            let [low, high] = [factor / spread, factor * spread].map(round_number);
-            format!("between 1/{} and 1/{}", rounded(high, 2), rounded(low, 2))
+            let [low, high] = [factor / spread, factor * spread].map(rough);
+            format!("between {} and {}", one_part_of(high), one_part_of(low))
         }
     }
 
@@ -97,7 +97,7 @@ pub(super) fn sentence(sides: &[SideFigures; 2], speed_up: Option<&SpeedUp>) -> 
         Some(speed_up) if speed_up.is_vague() => {
             "It is too early to tell which of A and B is faster".to_owned()
         }
-        Some(_) => "A and B are equally fast within what is known".to_owned(),
+        Some(_) => "No measurable difference in speed between A and B".to_owned(),
         None => unknown(sides),
     }
 }
@@ -105,9 +105,9 @@ pub(super) fn sentence(sides: &[SideFigures; 2], speed_up: Option<&SpeedUp>) -> 
 /// Why there is nothing to say.
 fn unknown(sides: &[SideFigures; 2]) -> String {
     match [0, 1].map(|side| sides[side].is_noiseless()) {
-        [true, true] => "Neither A nor B shows any noise",
-        [true, false] => "A shows no noise, so that times can't be compared",
-        [false, true] => "B shows no noise, so that times can't be compared",
+        [true, true] => "Neither A nor B has any noise",
+        [true, false] => "A has no noise, so times cannot be compared",
+        [false, true] => "B has no noise, so times cannot be compared",
         [false, false] => "There are too few samples to compare A and B",
     }
     .to_owned()
@@ -126,15 +126,6 @@ fn percents(factor: f64, spread: f64) -> String {
         let (low, high) = (fives(share / spread), fives(share * spread).min(95.0));
         format!("between {low:.0} and {high:.0} %")
     }
-}
-
-/// The nearest of the numbers that one uses for rough figures.
-fn round_number(value: f64) -> f64 {
-    const STEPS: [f64; 10] = [1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0];
-    let decade = 10_f64.powf(value.log10().floor());
-    let distance = |candidate: &f64| (candidate / value).ln().abs();
-    let candidates = STEPS.into_iter().chain([10.0]).map(|step| step * decade);
-    candidates.min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(value)
 }
 
 #[cfg(test)]
@@ -165,7 +156,7 @@ mod tests {
         }
         let expected = "A needs 1/38 of B's time for the same noise";
         assert_eq!(sentence_of(1.0 / 38.2, 0.02), expected);
-        assert_eq!(sentence_of(1.05, 0.05), "A and B are equally fast within what is known");
+        assert_eq!(sentence_of(1.05, 0.05), "No measurable difference in speed between A and B");
         assert!(sentence_of(1.3, 0.3).starts_with("It is too early"));
     }
 
@@ -180,8 +171,8 @@ mod tests {
         let noisy =
             SideFigures { variance_of_mean: Some(1.0), variance_error: Some(0.1), ..silent };
         assert_eq!(SpeedUp::new(&silent, &noisy), None);
-        assert!(sentence(&[silent, noisy], None).starts_with("A shows no noise"));
-        assert!(sentence(&[noisy, silent], None).starts_with("B shows no noise"));
+        assert!(sentence(&[silent, noisy], None).starts_with("A has no noise"));
+        assert!(sentence(&[noisy, silent], None).starts_with("B has no noise"));
         assert!(sentence(&[silent; 2], None).starts_with("Neither"));
         assert!(sentence(&[SideFigures::default(); 2], None).contains("too few samples"));
         let timeless = SideFigures { cpu_seconds: 0.0, ..noisy };

@@ -2,13 +2,13 @@
 
 use glam::UVec2;
 
-use super::SideFigures;
+use super::side_figures::SideFigures;
 use crate::render::area::Area;
 use crate::render::estimate::{PixelEstimate, gray};
 use crate::render::film::Film;
 use crate::render::publish::Picture;
 
-/// What is summed over some pixels of one side.
+/// Sums over some pixels of one side.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Tally {
     pixels: u64,
@@ -43,7 +43,7 @@ impl Default for Tally {
     }
 }
 
-/// What pixels are read from.
+/// A film or a picture that pixels are read from.
 pub(super) trait PixelSource: Sync {
     /// Width and height.
     fn size(&self) -> UVec2;
@@ -51,11 +51,11 @@ pub(super) trait PixelSource: Sync {
     /// Samples of a pixel, or fewer.
     fn samples(&self, pixel: UVec2) -> u32;
 
-    /// What the samples of a pixel say, once it has any.
+    /// The estimate of a pixel, once it has any samples.
     fn estimate(&self, pixel: UVec2) -> Option<Estimate>;
 }
 
-/// What the samples of a pixel say.
+/// The estimate of a pixel from its samples.
 pub(super) struct Estimate {
     mean: [f64; 3],
     /// Variance of the gray mean, and the variance of that.
@@ -102,7 +102,7 @@ impl PixelSource for Picture {
 }
 
 impl Tally {
-    /// Over the pixels of `area`, all of which the source has.
+    /// Sums over the pixels of `area`, all of which the source has.
     pub fn of(source: &impl PixelSource, area: &Area) -> Self {
         let mut tally = Self::default();
         for pixel in area.iter() {
@@ -145,7 +145,7 @@ impl Tally {
         }
     }
 
-    /// The figures that come of it.
+    /// The figures of the side from its sums.
     pub fn side(&self, cpu_seconds: f64) -> SideFigures {
         let mean_of = |sum: f64, count: u64| (count > 0).then(|| sum / count as f64);
         let variance = mean_of(self.variance, self.measured);

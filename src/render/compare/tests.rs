@@ -2,9 +2,12 @@
 
 use glam::UVec2;
 
+use super::tally::Tally;
 use super::*;
 use crate::render::FilmStats;
 use crate::render::synthetic::{Fireflies, GrayLevel, sampled};
+use crate::render::{Area, Film};
+use crate::transport::SampleNumber;
 
 const SIZE: UVec2 = UVec2::new(40, 30);
 
@@ -88,9 +91,9 @@ fn an_area_has_figures_of_its_own() {
     /// Bright and noisy to the left of x = 20, dark and quiet to the right.
     struct Halves(u64);
     impl crate::transport::PixelSampler for Halves {
-        fn sample(&self, pixel: UVec2, sample: u32) -> crate::transport::PathSample {
+        fn sample(&self, pixel: UVec2, number: SampleNumber) -> crate::transport::PathSample {
             let (mean, spread) = if pixel.x < 20 { (2.0, 1.0) } else { (0.5, 0.1) };
-            GrayLevel { seed: self.0, mean, spread }.sample(pixel, sample)
+            GrayLevel { seed: self.0, mean, spread }.sample(pixel, number)
         }
     }
     let films = [0, 1].map(|seed| sampled(&Halves(seed), SIZE, 16));
@@ -174,9 +177,9 @@ fn a_bias_of_two_percent_is_found() {
 fn a_local_bias_is_found_in_its_block() {
     struct Spot;
     impl crate::transport::PixelSampler for Spot {
-        fn sample(&self, pixel: UVec2, sample: u32) -> crate::transport::PathSample {
+        fn sample(&self, pixel: UVec2, number: SampleNumber) -> crate::transport::PathSample {
             let mean = if pixel.x < 16 && pixel.y < 16 { 1.05 } else { 0.986 };
-            GrayLevel { seed: 9, mean, spread: 0.5 }.sample(pixel, sample)
+            GrayLevel { seed: 9, mean, spread: 0.5 }.sample(pixel, number)
         }
     }
     let films = [level(8, 1.0, 0.5, 16), sampled(&Spot, SIZE, 16)];

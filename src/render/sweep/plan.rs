@@ -78,9 +78,11 @@ pub fn plan(strategy: &Strategy, idle: &Idle<'_>) -> Vec<Trial> {
     let [baseline, full] =
         [Preset::Baseline, Preset::Full].map(|preset| strategy.with_toggles_of(preset));
     let mut wanted = vec![(TrialKind::Baseline, baseline), (TrialKind::Full, full)];
+    wanted.extend(
+        Toggle::all().map(|toggle| (TrialKind::Alone(toggle), toggle.set(&baseline, true))),
+    );
     wanted
-        .extend(Toggle::ALL.map(|toggle| (TrialKind::Alone(toggle), toggle.set(&baseline, true))));
-    wanted.extend(Toggle::ALL.map(|toggle| (TrialKind::Without(toggle), toggle.set(&full, false))));
+        .extend(Toggle::all().map(|toggle| (TrialKind::Without(toggle), toggle.set(&full, false))));
     if wanted.iter().all(|(_, other)| other != strategy) {
         wanted.push((TrialKind::AsSet, *strategy));
     }
@@ -110,18 +112,18 @@ fn source(earlier: &[Trial], strategy: &Strategy, idle: &Idle<'_>) -> TrialSourc
 
 /// `strategy` with those toggles off that change nothing beside the others.
 fn effective(strategy: &Strategy, idle: &Idle<'_>) -> Strategy {
-    let idle_toggles = Toggle::ALL.into_iter().filter(|toggle| idle(*toggle, strategy).is_some());
+    let idle_toggles = Toggle::all().filter(|toggle| idle(*toggle, strategy).is_some());
     idle_toggles.fold(*strategy, |effective, toggle| toggle.set(&effective, false))
 }
 
 /// Why two strategies do the same: what makes the toggle idle in which they differ.
 fn why(a: &Strategy, b: &Strategy, idle: &Idle<'_>) -> &'static str {
-    let differing = Toggle::ALL.into_iter().filter(|toggle| toggle.is_on(a) != toggle.is_on(b));
+    let differing = Toggle::all().filter(|toggle| toggle.is_on(a) != toggle.is_on(b));
     let reason = |toggle: Toggle| {
         let on = if toggle.is_on(a) { a } else { b };
         idle(toggle, on)
     };
-    differing.into_iter().find_map(reason).unwrap_or("nothing that they differ in matters here.")
+    differing.into_iter().find_map(reason).unwrap_or("the toggles that differ have no effect here.")
 }
 
 #[cfg(test)]
@@ -147,10 +149,10 @@ mod tests {
         let trials = plan(&set, &|_, _| None);
         assert_eq!(trials.len(), 12);
         assert!(trials.iter().all(|trial| trial.source == TrialSource::Rendered));
-        for toggle in Toggle::ALL {
+        for toggle in Toggle::all() {
             let on = |kind| {
                 let strategy = find(&trials, kind).strategy;
-                Toggle::ALL.into_iter().filter(|toggle| toggle.is_on(&strategy)).collect::<Vec<_>>()
+                Toggle::all().filter(|toggle| toggle.is_on(&strategy)).collect::<Vec<_>>()
             };
             assert_eq!(on(TrialKind::Alone(toggle)), [toggle]);
             let left = on(TrialKind::Without(toggle));

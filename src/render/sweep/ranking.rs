@@ -76,7 +76,7 @@ impl Ranking {
         // What is not known yet may be the best of all.
         let all_known = entries.iter().all(|entry| entry.is_known() || !entry.is_rendered());
         let leave_on = best.filter(|_| all_known).map(|_| leave_on(&entries));
-        Self { entries, leave_on, worths: Toggle::ALL.map(|toggle| all.worth(toggle)).to_vec() }
+        Self { entries, leave_on, worths: Toggle::all().map(|toggle| all.worth(toggle)).collect() }
     }
 
     /// The entry to leave on.

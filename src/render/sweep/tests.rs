@@ -94,7 +94,8 @@ fn probes_that_are_shared_are_those_of_each_strategy() {
     ] {
         let number = trials.iter().position(|trial| trial.kind == kind).unwrap();
         let scene = Scene { strategy: trials[number].strategy, ..scene() };
-        let frame: Arc<dyn PixelSampler> = Arc::new(Frame::new(Arc::new(scene), SIZE, 3));
+        let frame: Arc<dyn PixelSampler> =
+            Arc::new(Frame::new(Arc::new(scene), SIZE, 3, NO_PROGRESS).unwrap());
         let mut alone = [SideInProgress::new(frame, SIZE, amount).unwrap()];
         take_turns(&mut alone, &pool, &go_on, &mut |_| ());
         let [alone] = alone;

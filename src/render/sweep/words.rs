@@ -1,8 +1,8 @@
-//! What a sweep found, in words.
+//! The findings of a sweep in words.
 
 use super::plan::TrialSource;
 use super::ranking::{Gain, RankedTrial, Ranking, Worth};
-use crate::format::{percent, rounded};
+use crate::format::{one_part_of, percent, rounded};
 use crate::render::compare::SpeedUp;
 
 /// Names in a row before the rest is counted.
@@ -11,7 +11,7 @@ const MOST_NAMES: usize = 4;
 /// Which strategy to leave on and what that brings, without a full stop.
 pub fn headline(ranking: &Ranking) -> String {
     let Some(best) = ranking.best() else {
-        return "There are too few samples to rank the strategies; give each more time".to_owned();
+        return "Too few samples to rank the strategies; allow more time for each".to_owned();
     };
     if ranking.entries.iter().filter(|entry| entry.is_rendered()).count() == 1 {
         return "No toggle changes anything in this shot".to_owned();
@@ -19,19 +19,19 @@ pub fn headline(ranking: &Ranking) -> String {
     let name = best.trial.kind.name();
     match &best.over_baseline {
         _ if best.side.is_some_and(|side| side.is_noiseless()) => {
-            format!("Leave on {name}: no noise")
+            format!("Leave on {name}: it has no noise")
         }
-        None => format!("Leave on {name}: the fastest; baseline can't be compared with it"),
+        None => format!("Leave on {name}: the fastest; it cannot be compared with baseline"),
         Some(speed_up) if speed_up.is_clear() => {
             let share = speed_up.share();
             format!("Leave on {name}: {share} of baseline's time for the same noise")
         }
         Some(_) if ranking.entries.iter().any(RankedTrial::is_vague) => {
-            "It is too early to tell whether any strategy is faster than baseline; give each more \
-             time"
+            "It is too early to tell whether any strategy is faster than baseline; allow more time \
+             for each"
                 .to_owned()
         }
-        Some(_) => "No strategy is faster than baseline within what is known".to_owned(),
+        Some(_) => "No strategy is measurably faster than baseline".to_owned(),
     }
 }
 
@@ -52,7 +52,7 @@ fn brought_alone(ranking: &Ranking) -> Option<String> {
     let named = |(name, it): &(String, SpeedUp)| format!("{name} ({} of its time)", it.share());
     let names: Vec<String> = faster.iter().map(named).collect();
     Some(match names.is_empty() {
-        true => "Alone, no toggle is faster than baseline within what is known".to_owned(),
+        true => "Alone, no toggle is measurably faster than baseline".to_owned(),
         false => format!("Alone, these are faster than baseline: {}", listed(&names)),
     })
 }
@@ -67,7 +67,7 @@ fn lost(ranking: &Ranking) -> Option<String> {
     };
     let names: Vec<String> = slower.iter().map(named).collect();
     Some(match names.is_empty() {
-        true => "Full takes no longer without any one toggle within what is known".to_owned(),
+        true => "Full is not measurably slower without any one toggle".to_owned(),
         false => format!("Full takes longer without {}", listed(&names)),
     })
 }
@@ -92,8 +92,8 @@ fn not_told_apart(ranking: &Ranking) -> Vec<String> {
         others.map(|(_, entry)| entry.trial.kind.name()).collect::<Vec<_>>()
     };
     let groups = [
-        ("As good within what is known", names(RankedTrial::is_as_good_as_best)),
-        ("Too early to tell from it", names(RankedTrial::is_vague)),
+        ("No measurable difference", names(RankedTrial::is_as_good_as_best)),
+        ("Too early to tell the difference", names(RankedTrial::is_vague)),
     ];
     let told = groups.into_iter().filter(|(_, names)| !names.is_empty());
     told.map(|(what, names)| format!("{what}: {}", listed(&names))).collect()
@@ -118,7 +118,7 @@ fn listed(names: &[String]) -> String {
 pub fn relative_time(speed_up: &SpeedUp) -> String {
     let ratio = speed_up.ratio;
     let time = match ratio >= 2.0 {
-        true => format!("1/{}", rounded(ratio, 2)),
+        true => one_part_of(ratio),
         false => rounded(1.0 / ratio, 2),
     };
     match speed_up.log_error > 0.0 {

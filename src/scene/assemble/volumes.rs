@@ -63,7 +63,8 @@ fn built(
     let (volume, file_from_local) = match (&file, settings.shape) {
         (Some(file), _) => from_file(file, &unplaced, key, progress)?,
         (None, Some(shape)) => {
-            (from_shape(ShapeSource::new(shape, &unplaced), &unplaced, key)?, DAffine3::IDENTITY)
+            let shape = ShapeSource::new(shape, &unplaced);
+            (from_shape(shape, &unplaced, key, progress)?, DAffine3::IDENTITY)
         }
         (None, None) => {
             return Err(Error::invalid("", key, "a volume needs a file or a shape"));
@@ -99,16 +100,24 @@ fn from_file(
         return Err(Error::invalid(file.name(), key, "the file has no grids"));
     };
     let cell_size = Vec3A::splat(CELL_VOXELS);
-    let volume = Volume::varying(grids.bounds(), properties, cell_size, grids.voxel());
+    let voxel = grids.voxel();
+    let volume = Volume::varying(grids.bounds(), properties, cell_size, voxel, progress)?;
     Ok((volume, grids.file_from_local()))
 }
 
-fn from_shape(shape: ShapeSource, settings: &VolumeSettings, key: &str) -> Result<Volume> {
+fn from_shape(
+    shape: ShapeSource,
+    settings: &VolumeSettings,
+    key: &str,
+    progress: Progress,
+) -> Result<Volume> {
     let (region, cell_size) = (shape.region, shape.cell_size);
     let is_constant = matches!(shape.field, ScalarField::Constant(_));
     let properties = properties(&mut VolumeSource::Shape(shape), settings, key)?;
     Ok(match region {
-        Region::Box(bounds) if !is_constant => Volume::varying(bounds, properties, cell_size, None),
+        Region::Box(bounds) if !is_constant => {
+            Volume::varying(bounds, properties, cell_size, None, progress)?
+        }
         region => Volume::uniform(region, properties),
     })
 }

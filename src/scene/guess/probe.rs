@@ -4,7 +4,7 @@ use glam::Vec3A;
 
 use crate::math::Aabb;
 use crate::scene::cache::{GridValues, PlacedGrid};
-use crate::scene::guess::grid_bounds;
+use crate::scene::describe::grid_bounds;
 
 /// Lines across each of the two other axes.
 const LINES: usize = 32;
@@ -14,6 +14,9 @@ const SAMPLES: usize = 64;
 const LATTICE: usize = 48;
 /// The share of the mean from which on something is seen.
 const VISIBLE: f32 = 0.1;
+
+/// The lines of sight that count as fairly thick and fairly bright.
+pub(super) const FAIRLY: f32 = 0.8;
 
 /// ∫ of `measure` of the grid's value along lines through `bounds` (in the file's space) in the
 /// direction of `axis`, of every line that meets anything, in ascending order.
@@ -84,11 +87,6 @@ pub(super) fn quantile(sorted: &[f32], part: f32) -> Option<f32> {
     seen.get(index.min(seen.len().saturating_sub(1))).copied()
 }
 
-/// `value` to two digits, as one would type it.
-pub(in crate::scene) fn two_digits(value: f32) -> f32 {
-    format!("{value:.1e}").parse().unwrap_or(value)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -100,12 +98,5 @@ mod tests {
         assert_eq!(quantile(&sums, 0.5), Some(3.0));
         assert_eq!(quantile(&sums, 1.0), Some(4.0));
         assert_eq!(quantile(&[], 0.5), None);
-    }
-
-    #[test]
-    fn numbers_are_rounded_as_typed() {
-        assert_eq!(two_digits(12.345), 12.0);
-        assert_eq!(two_digits(0.034_56), 0.035);
-        assert_eq!(two_digits(1234.0), 1200.0);
     }
 }

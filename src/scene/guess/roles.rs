@@ -1,8 +1,8 @@
-//! Which grid of a file is what, by name, type, class and range.
+//! The roles of the grids of a file, told by name, type, class and range.
 
 use crate::error::Result;
 use crate::scene::cache::{GridValues, PlacedGrid};
-use crate::scene::conventions::{DENSITY, EMISSION, FLAME, OTHER, TEMPERATURE};
+use crate::scene::grid_names::{DENSITY, EMISSION, FLAME, OTHER, TEMPERATURE};
 use crate::scene::role::Role;
 use crate::volume::vdb::GridClass;
 
@@ -51,8 +51,8 @@ pub(super) fn density(grids: &[Candidate]) -> Option<&Candidate> {
     named.or_else(|| usable().find(unnamed))
 }
 
-/// The grid that glows: emission itself, else a temperature, else a flame.
-pub(super) fn glow(grids: &[Candidate]) -> Option<(&Candidate, Role)> {
+/// The grid that emits, with its role: emission itself, else a temperature, else a flame.
+pub(super) fn emission(grids: &[Candidate]) -> Option<(&Candidate, Role)> {
     let best = |role: Role| {
         let names = role.names();
         let usable = grids.iter().filter(|grid| {

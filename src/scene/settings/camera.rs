@@ -7,15 +7,15 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct CameraSettings {
-    /// Where the camera stands, in world space.
+    /// The position of the camera, in world space.
     #[schemars(extend("unit" = "length"))]
     pub position: [f32; 3],
-    /// The point in the middle of the picture, in world space.
+    /// The point that the camera looks at, in world space.
     #[schemars(extend("unit" = "length"))]
     pub target: [f32; 3],
     /// The direction that points up in the picture.
     pub up: [f32; 3],
-    /// The full horizontal angle of view.
+    /// The horizontal field of view.
     #[schemars(extend("unit" = "degrees", "exclusiveMinimum" = 0.0, "maximum" = 179.9))]
     pub fov_x: f32,
 }

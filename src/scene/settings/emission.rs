@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Color;
+use super::or_default::or_default;
 
 const SCALE: f32 = 1.0;
 const COLOR: Color = Color::Gray(1.0);
@@ -17,54 +18,55 @@ const NORMALIZE: Normalize = Normalize::Peak;
 const STOPS: [[f32; 4]; 2] = [[0.0; 4], [1.0; 4]];
 const REFERENCE_KELVIN: f32 = 1500.0;
 
-/// How a volume glows.
+/// The emission of a volume.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct EmissionSettings {
-    /// Where the glow comes from.
+    /// The source of the emission.
     pub mode: EmissionMode,
-    /// The grid that the glow is read from: by default `emission` for mode grid, `temperature`
-    /// for blackbody, `flame` for ramp.
+    /// The grid that emission is read from: by default `emission` for mode grid, `temperature` for
+    /// blackbody, `flame` for ramp.
     #[schemars(extend("default" = null, "only" = {"mode": ["grid", "blackbody", "ramp"]}))]
     pub grid: Option<String>,
     /// Emitted radiance per unit length = scale * value of the grid.
     #[schemars(extend("unit" = "radiance/length", "minimum" = 0.0, "default" = SCALE))]
     #[schemars(extend("only" = {"mode": ["grid"]}))]
     pub scale: Option<f32>,
-    /// The color of a grid of single numbers.
+    /// The color of the emission of a scalar grid.
     #[schemars(extend("default" = COLOR, "only" = {"mode": ["grid"]}))]
     pub color: Option<Color>,
-    /// Emitted radiance per unit length, the same all over the volume.
+    /// Emitted radiance per unit length, the same everywhere in the volume.
     #[schemars(extend("unit" = "radiance/length", "default" = VALUE))]
     #[schemars(extend("only" = {"mode": ["constant"]}))]
     pub value: Option<Color>,
-    /// Source radiance: what a very thick layer of the volume would show.
+    /// Source radiance: the radiance of an optically thick layer of the volume.
     #[schemars(extend("unit" = "radiance", "default" = LE, "only" = {"mode": ["source"]}))]
     pub le: Option<Color>,
-    /// Taken from the grid's value before it is scaled to kelvin.
+    /// Subtracted from the value of the grid before it is scaled to kelvin.
     #[schemars(extend("default" = KELVIN_OFFSET, "only" = {"mode": ["blackbody"]}))]
     pub kelvin_offset: Option<f32>,
-    /// Kelvin = (value - kelvin_offset) * kelvin_scale. Files in kelvin need 1; Blender's
-    /// temperature of 0 to 3 needs about 1000.
+    /// Temperature in kelvin = (value - kelvin_offset) * kelvin_scale. Files in kelvin need 1;
+    /// Blender's temperatures of 0 to 3 need about 1000.
     #[schemars(extend("unit" = "kelvin", "minimum" = 0.0, "default" = KELVIN_SCALE))]
     #[schemars(extend("only" = {"mode": ["blackbody"]}))]
     pub kelvin_scale: Option<f32>,
-    /// How bright the glow is.
+    /// The intensity of the emission.
     #[schemars(extend("unit" = "radiance/length", "minimum" = 0.0, "default" = INTENSITY))]
     #[schemars(extend("only" = {"mode": ["blackbody", "ramp"]}))]
     pub intensity: Option<f32>,
-    /// Whether the glow is multiplied by the density grid's value, so that thin smoke glows less.
+    /// Whether emission is multiplied by the density grid, so that thin smoke emits less.
     #[schemars(extend("default" = TIMES_DENSITY, "only" = {"mode": ["blackbody", "ramp"]}))]
     pub times_density: Option<bool>,
-    /// `peak`: every temperature equally bright, only its color changes; `t4`: brightness grows
-    /// with the fourth power of the temperature, as it does in nature.
+    /// How brightness depends on temperature. `peak` (constant): every temperature is equally
+    /// bright and only its color changes; `t4` (physical): brightness grows with the fourth power
+    /// of the temperature.
     #[schemars(extend("default" = NORMALIZE, "only" = {"mode": ["blackbody"]}))]
     pub normalize: Option<Normalize>,
-    /// With `normalize = "t4"`: the temperature whose brightness stays as it is.
+    /// With `normalize = "t4"`: the temperature whose brightness is that of `peak`.
     #[schemars(extend("unit" = "kelvin", "exclusiveMinimum" = 0.0, "default" = REFERENCE_KELVIN))]
     #[schemars(extend("only" = {"mode": ["blackbody"]}))]
     pub reference_kelvin: Option<f32>,
-    /// Color stops [value, r, g, b] in ascending order of value; linear between them, held
+    /// Color stops [value, r, g, b] in ascending order of value; linear between them, constant
     /// beyond the ends.
     #[schemars(extend("label" = "[[value, r, g, b], ...]", "unit" = "radiance/length"))]
     #[schemars(extend("default" = STOPS))]
@@ -72,22 +74,22 @@ pub struct EmissionSettings {
     pub stops: Option<Vec<[f32; 4]>>,
 }
 
-/// Where a volume's glow comes from.
+/// The source of a volume's emission.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum EmissionMode {
-    /// It does not glow.
+    /// No emission.
     #[default]
     None,
-    /// Read from a grid, untouched by density and albedo.
+    /// Read from a grid, independent of density and albedo.
     Grid,
-    /// The same all over the volume.
+    /// The same everywhere in the volume.
     Constant,
-    /// In proportion to the absorption.
+    /// Proportional to the absorption.
     Source,
-    /// From a temperature, as a black body.
+    /// Blackbody emission from a temperature grid.
     Blackbody,
-    /// From a grid through a color ramp.
+    /// A grid mapped through a color ramp.
     Ramp,
 }
 
@@ -95,10 +97,10 @@ pub enum EmissionMode {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Normalize {
-    /// Every temperature has the same peak.
+    /// Constant: every temperature has the same peak.
     #[default]
     Peak,
-    /// Proportional to (T / reference_kelvin)^4.
+    /// Physical: proportional to (T / reference_kelvin)^4.
     T4,
 }
 

@@ -8,17 +8,18 @@ use super::Color;
 /// The largest seed: up to here whole numbers survive programs that read all numbers as `f64`.
 pub const MAX_SEED: u64 = (1 << 53) - 1;
 
-/// The picture: its size and how long it is sampled.
+/// The film: render size, seed and samples.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct FilmSettings {
-    /// Width and height. The window takes its own size unless told to keep this one.
+    /// Render size: width and height. The window renders at its own size unless told to keep this
+    /// one.
     #[schemars(extend("unit" = "pixels", "minimum" = 1, "maximum" = 16384))]
     pub size: [u32; 2],
-    /// Another seed gives the same picture with other noise.
+    /// The random seed. Another seed gives the same picture with other noise.
     #[schemars(range(min = 0, max = MAX_SEED))]
     pub seed: u64,
-    /// Samples per pixel after which the picture is finished; 0 goes on until stopped.
+    /// Max samples per pixel, after which the picture is finished; 0 is no limit.
     #[schemars(extend("unit" = "samples"), range(min = 0, max = 4_294_967_295_u32))]
     pub spp: u32,
 }
@@ -29,21 +30,21 @@ impl Default for FilmSettings {
     }
 }
 
-/// How far paths go.
+/// The length of paths.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct PathSettings {
-    /// The number of real scattering events and reflections after which a path ends; 0 lets paths
-    /// end by themselves (a guard at 100 000 is counted and shown).
+    /// Max bounces: the number of scattering events and reflections after which a path ends; 0 is
+    /// no limit (a guard at 100 000 is counted and shown).
     #[schemars(extend("unit" = "events"), range(min = 0, max = 100_000))]
     pub max_scatters: u32,
 }
 
-/// The light that comes from everywhere around.
+/// The sky: light from all directions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct EnvironmentSettings {
-    /// The same radiance from every direction.
+    /// The radiance of the sky, the same from every direction.
     #[schemars(extend("unit" = "radiance"))]
     pub radiance: Color,
 }

@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Color;
+use super::or_default::or_default;
 
 const POSITION: [f32; 3] = [0.0, 0.0, 2.0];
 const TARGET: [f32; 3] = [0.0; 3];
@@ -20,51 +21,52 @@ const HALF_V: [f32; 3] = [0.0, 0.5, 0.0];
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct LightSettings {
-    /// What kind of light it is.
+    /// The type of light. The window calls `sphere` sphere light and `quad` area light.
     #[serde(rename = "type")]
     pub kind: LightKind,
-    /// How bright it is: radiant intensity in W/sr for point and spot, irradiance for sun
+    /// The brightness: radiant intensity in W/sr for point and spot, irradiance for sun
     /// (`irradiance` means the same there), radiance for sphere and quad (`radiance` there).
     #[schemars(extend("default" = 1.0))]
     pub intensity: Color,
-    /// Whether the camera sees the light itself. Points and spots have no size to be seen.
+    /// Whether the light is visible to the camera. Points and spots have no size and never are.
     pub visible: bool,
-    /// Where the light stands.
+    /// The position of the light.
     #[schemars(extend("unit" = "length", "default" = POSITION))]
     #[schemars(extend("only" = {"type": ["point", "spot"]}))]
     pub position: Option<[f32; 3]>,
-    /// The point that the spot is aimed at.
+    /// The point that the spot light is aimed at.
     #[schemars(extend("unit" = "length", "default" = TARGET))]
     #[schemars(extend("only" = {"type": ["spot"]}))]
     pub target: Option<[f32; 3]>,
-    /// The full angle of the spot's cone.
+    /// The full angle of the cone of the spot light.
     #[schemars(extend("unit" = "degrees", "minimum" = 0.1, "maximum" = 180.0, "default" = CONE))]
     #[schemars(extend("only" = {"type": ["spot"]}))]
     pub cone: Option<f32>,
-    /// The share of the cone over which the spot fades out at its rim.
+    /// The fraction of the cone over which the spot light fades out at its edge.
     #[schemars(extend("minimum" = 0.0, "maximum" = 1.0, "default" = BLEND))]
     #[schemars(extend("only" = {"type": ["spot"]}))]
     pub blend: Option<f32>,
-    /// The direction in which the sun's light travels.
+    /// The direction in which sunlight travels.
     #[schemars(extend("default" = DIRECTION, "only" = {"type": ["sun"]}))]
     pub direction: Option<[f32; 3]>,
-    /// The angle across the sun's disk; 0 gives hard shadows.
+    /// The angular diameter of the sun; 0 gives hard shadows.
     #[schemars(extend("unit" = "degrees", "minimum" = 0.0, "maximum" = 180.0, "default" = ANGLE))]
     #[schemars(extend("only" = {"type": ["sun"]}))]
     pub angle: Option<f32>,
-    /// The middle of the sphere or quad.
+    /// The center of the sphere light or area light.
     #[schemars(extend("unit" = "length", "default" = CENTER))]
     #[schemars(extend("only" = {"type": ["sphere", "quad"]}))]
     pub center: Option<[f32; 3]>,
-    /// The sphere's radius.
+    /// The radius of the sphere light.
     #[schemars(extend("unit" = "length", "exclusiveMinimum" = 0.0, "default" = RADIUS))]
     #[schemars(extend("only" = {"type": ["sphere"]}))]
     pub radius: Option<f32>,
-    /// From the quad's middle to the middle of one edge.
+    /// Half of one edge of the area light, as a vector from its center to the middle of a side.
     #[schemars(extend("unit" = "length", "default" = HALF_U))]
     #[schemars(extend("only" = {"type": ["quad"]}))]
     pub half_u: Option<[f32; 3]>,
-    /// From the quad's middle to the middle of the next edge.
+    /// Half of the other edge of the area light, as a vector from its center to the middle of a
+    /// side.
     #[schemars(extend("unit" = "length", "default" = HALF_V))]
     #[schemars(extend("only" = {"type": ["quad"]}))]
     pub half_v: Option<[f32; 3]>,
@@ -74,16 +76,16 @@ pub struct LightSettings {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum LightKind {
-    /// Far away, from one direction.
+    /// A distant light from one direction.
     Sun,
-    /// A point that shines everywhere.
+    /// A point that shines in all directions.
     #[default]
     Point,
     /// A point that shines into a cone.
     Spot,
-    /// A glowing ball.
+    /// An emitting sphere.
     Sphere,
-    /// A glowing parallelogram; shines to both sides.
+    /// An emitting parallelogram (area light); shines to both sides.
     Quad,
 }
 

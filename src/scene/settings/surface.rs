@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::or_default::or_default;
 use super::{Color, Extent};
 
 const POINT: [f32; 3] = [0.0; 3];
@@ -14,43 +15,43 @@ const RADIUS: f32 = 1.0;
 const REFLECTANCE: Color = Color::Gray(0.5);
 const ALPHA: f32 = 0.2;
 
-/// One solid thing.
+/// One surface.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct SurfaceSettings {
-    /// What it looks like from afar.
+    /// The shape of the surface.
     pub shape: SurfaceShape,
-    /// A point of the plane; the middle of the square if `half_size` is given.
+    /// A point of the plane; the center of the square if `half_size` is given.
     #[schemars(extend("unit" = "length", "default" = POINT))]
     #[schemars(extend("only" = {"shape": ["plane"]}))]
     pub point: Option<[f32; 3]>,
-    /// The direction the plane faces.
+    /// The normal of the plane.
     #[schemars(extend("default" = NORMAL, "only" = {"shape": ["plane"]}))]
     pub normal: Option<[f32; 3]>,
-    /// Half the edges of a box, or of the square that is left of a plane; a plane without it goes
-    /// on for ever.
+    /// Half the size of a box, or of the square that a finite plane is; a plane without it is
+    /// infinite.
     #[schemars(extend("unit" = "length", "exclusiveMinimum" = 0.0, "default" = null))]
     #[schemars(extend("only" = {"shape": ["plane", "box"]}))]
     pub half_size: Option<Extent>,
-    /// The middle of the quad, sphere or box.
+    /// The center of the quad, sphere or box.
     #[schemars(extend("unit" = "length", "default" = CENTER))]
     #[schemars(extend("only" = {"shape": ["quad", "sphere", "box"]}))]
     pub center: Option<[f32; 3]>,
-    /// From the quad's middle to the middle of one edge.
+    /// Half of one edge of the quad, as a vector from its center to the middle of a side.
     #[schemars(extend("unit" = "length", "default" = HALF_U))]
     #[schemars(extend("only" = {"shape": ["quad"]}))]
     pub half_u: Option<[f32; 3]>,
-    /// From the quad's middle to the middle of the next edge.
+    /// Half of the other edge of the quad, as a vector from its center to the middle of a side.
     #[schemars(extend("unit" = "length", "default" = HALF_V))]
     #[schemars(extend("only" = {"shape": ["quad"]}))]
     pub half_v: Option<[f32; 3]>,
-    /// The sphere's radius.
+    /// The radius of the sphere.
     #[schemars(extend("unit" = "length", "exclusiveMinimum" = 0.0, "default" = RADIUS))]
     #[schemars(extend("only" = {"shape": ["sphere"]}))]
     pub radius: Option<f32>,
-    /// What it is made of. Without it, a surface that emits is black and any other one diffuse.
+    /// The material. Without it, a surface that emits is black and any other one diffuse.
     pub material: Option<MaterialSettings>,
-    /// The radiance it emits to both sides.
+    /// The radiance that the surface emits to both sides.
     #[schemars(extend("unit" = "radiance"))]
     pub emission: Color,
 }
@@ -59,44 +60,45 @@ pub struct SurfaceSettings {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum SurfaceShape {
-    /// A plane, or a square cut from it.
+    /// An infinite plane, or a square.
     #[default]
     Plane,
     /// A parallelogram.
     Quad,
     /// A sphere.
     Sphere,
-    /// A box along the axes.
+    /// An axis-aligned box.
     Box,
 }
 
-/// What a surface is made of.
+/// The material of a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct MaterialSettings {
-    /// How it reflects.
+    /// The type of material.
     #[serde(rename = "type")]
     pub kind: MaterialKind,
-    /// The share of light that comes back; for a conductor from every microfacet, without Fresnel.
+    /// The fraction of light that is reflected; for a conductor by every microfacet, without
+    /// Fresnel.
     #[schemars(extend("maximum" = 1.0, "default" = REFLECTANCE))]
     #[schemars(extend("only" = {"type": ["diffuse", "conductor"]}))]
     pub reflectance: Option<Color>,
-    /// How rough the conductor is (GGX): small is a mirror, 1 is dull.
+    /// The roughness alpha of the conductor (GGX): small is a mirror, 1 is dull.
     #[schemars(extend("minimum" = 0.001, "maximum" = 1.0, "default" = ALPHA))]
     #[schemars(extend("only" = {"type": ["conductor"]}))]
     pub alpha: Option<f32>,
 }
 
-/// The ways a surface reflects.
+/// The types of material.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum MaterialKind {
-    /// Evenly to all sides, like chalk.
+    /// Reflects evenly in all directions, like chalk.
     #[default]
     Diffuse,
-    /// Like rough metal.
+    /// Reflects like rough metal.
     Conductor,
-    /// Not at all.
+    /// Reflects nothing.
     Black,
 }
 

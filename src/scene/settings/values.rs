@@ -26,7 +26,7 @@ pub enum Extent {
     Axes([f32; 3]),
 }
 
-/// The share of light that a collision scatters instead of absorbing it.
+/// The fraction of light that a collision scatters instead of absorbing.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 #[schemars(extend("label" = "number, [r, g, b] or { grid = \"name\" }"))]

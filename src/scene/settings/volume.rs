@@ -3,6 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::or_default::or_default;
 use super::{Albedo, Axis, Color, EmissionSettings, Extent};
 
 const HALF_SIZE: Extent = Extent::Uniform(1.0);
@@ -17,47 +18,48 @@ const OCTAVES: u32 = 4;
 const CONTRAST: f32 = 1.0;
 const SEED: u32 = 0;
 
-/// One volume: a file or a shape, where it stands and how it looks.
+/// One volume: a file or a shape, with its placement, medium and emission.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct VolumeSettings {
-    /// A name to tell volumes apart; means nothing to the picture.
+    /// A name to tell volumes apart; no effect on the picture.
     #[serde(skip_serializing_if = "String::is_empty")]
     #[schemars(extend("default" = ""))]
     pub name: String,
-    /// A volume file, relative to the scene file, or `builtin:NAME` for one of Flambeau's own.
+    /// A volume file, relative to the scene file, or `builtin:NAME` for one that comes with
+    /// Flambeau.
     pub file: Option<String>,
-    /// A shape instead of a file, filled with value 1 unless said otherwise.
+    /// A shape instead of a file, filled with the value 1 unless said otherwise.
     pub shape: Option<VolumeShape>,
 
-    /// Moves the volume; applied after `rotate`.
+    /// Translation of the volume; applied after `rotate`.
     #[schemars(extend("unit" = "length", "default" = [0.0, 0.0, 0.0]))]
     #[serde(skip_serializing_if = "is_default")]
     pub translate: [f32; 3],
-    /// Turns the volume about the x, then the y, then the z axis; applied after `scale`.
+    /// Rotation about the x, then the y, then the z axis; applied after `scale`.
     #[schemars(extend("unit" = "degrees", "default" = [0.0, 0.0, 0.0]))]
     #[serde(skip_serializing_if = "is_default")]
     pub rotate: [f32; 3],
-    /// Makes the volume larger or smaller. Density does not change with it.
+    /// Scale of the volume. Density does not change with it.
     #[schemars(extend("nonzero" = true, "default" = 1.0))]
     #[serde(skip_serializing_if = "is_default")]
     pub scale: Extent,
-    /// The whole placement as 3 rows of 4, in place of `scale`, `rotate` and `translate`.
+    /// The placement as a matrix of 3 rows of 4, in place of `scale`, `rotate` and `translate`.
     #[schemars(extend("default" = null))]
     pub matrix: Option<[[f32; 4]; 3]>,
 
-    /// How thick the volume is.
+    /// The density of the volume.
     pub density: DensitySettings,
-    /// The share of light that smoke scatters instead of swallowing: 0 is soot, 1 is cloud.
+    /// The fraction of light that a collision scatters instead of absorbing: 0 is soot, 1 is cloud.
     pub albedo: Albedo,
-    /// Where scattered light goes.
+    /// The phase function.
     #[serde(skip_serializing_if = "is_default")]
     pub phase: PhaseSettings,
-    /// How the volume glows.
+    /// The emission of the volume.
     #[serde(skip_serializing_if = "is_default")]
     pub emission: EmissionSettings,
 
-    /// Half the edges of the box that is filled, about the volume's own origin.
+    /// Half the size of the box that is filled, about the volume's own origin.
     #[schemars(extend("unit" = "length", "exclusiveMinimum" = 0.0, "default" = HALF_SIZE))]
     #[schemars(extend("only" = {"shape": ["box", "ramp", "noise"]}))]
     pub half_size: Option<Extent>,
@@ -71,42 +73,43 @@ pub struct VolumeSettings {
     /// `linear`: a + b * coordinate; `exponential`: a * exp(-coordinate / h).
     #[schemars(extend("default" = KIND, "only" = {"shape": ["ramp"]}))]
     pub kind: Option<RampKind>,
-    /// The ramp's value at the low face.
+    /// The value of the ramp at the low face.
     #[schemars(extend("minimum" = 0.0, "default" = A, "only" = {"shape": ["ramp"]}))]
     pub a: Option<f32>,
-    /// The linear ramp's change per unit length.
+    /// The slope of the linear ramp: its change per unit length.
     #[schemars(extend("unit" = "1/length", "default" = B))]
     #[schemars(extend("only" = {"shape": ["ramp"], "kind": ["linear"]}))]
     pub b: Option<f32>,
-    /// The length over which the exponential ramp falls to 37 percent.
+    /// The falloff length of the exponential ramp, over which it falls to 37 percent.
     #[schemars(extend("unit" = "length", "exclusiveMinimum" = 0.0, "default" = H))]
     #[schemars(extend("only" = {"shape": ["ramp"], "kind": ["exponential"]}))]
     pub h: Option<f32>,
-    /// How many large puffs fit into one unit of length.
+    /// The frequency of the noise: large puffs per unit length.
     #[schemars(extend("unit" = "1/length", "exclusiveMinimum" = 0.0, "default" = FREQUENCY))]
     #[schemars(extend("only" = {"shape": ["noise"]}))]
     pub frequency: Option<f32>,
-    /// How many layers of ever finer detail the noise has.
+    /// The number of octaves of ever finer detail.
     #[schemars(extend("minimum" = 1, "maximum" = 12, "default" = OCTAVES))]
     #[schemars(extend("only" = {"shape": ["noise"]}))]
     pub octaves: Option<u32>,
-    /// 0 is an even fog; larger values leave puffs with clear air between them.
+    /// The contrast of the noise: 0 is an even fog; larger values leave puffs with clear air
+    /// between.
     #[schemars(extend("minimum" = 0.0, "maximum" = 100.0, "default" = CONTRAST))]
     #[schemars(extend("only" = {"shape": ["noise"]}))]
     pub contrast: Option<f32>,
-    /// Another seed gives other puffs.
+    /// The seed of the noise. Another seed gives other puffs.
     #[schemars(extend("minimum" = 0, "maximum" = 4_294_967_295_u32, "default" = SEED))]
     #[schemars(extend("only" = {"shape": ["noise"]}))]
     pub seed: Option<u32>,
 }
 
-/// What is filled in place of a file's grids.
+/// A shape that is filled in place of the grids of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum VolumeShape {
     /// A box.
     Box,
-    /// A ball.
+    /// A sphere.
     Sphere,
     /// All of space.
     Everywhere,
@@ -127,24 +130,24 @@ pub enum RampKind {
     Exponential,
 }
 
-/// How thick a volume is.
+/// The density of a volume.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct DensitySettings {
-    /// The grid that the extinction is read from.
+    /// The grid that density is read from.
     #[schemars(extend("default" = "density"))]
     pub grid: Option<String>,
-    /// Extinction per unit length = scale * value of the grid. 0 makes the smoke vanish.
+    /// Extinction per unit length = scale * value of the grid. 0 makes the smoke invisible.
     #[schemars(extend("unit" = "1/length"))]
     pub scale: Color,
 }
 
-/// Where scattered light goes.
+/// The phase function.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct PhaseSettings {
-    /// Henyey-Greenstein's mean cosine: 0 scatters evenly, towards 1 light goes on forwards,
-    /// towards -1 it turns back.
+    /// Anisotropy of the phase function (Henyey-Greenstein): 0 is isotropic, towards 1 light
+    /// scatters forward, towards -1 backward.
     #[schemars(range(min = -0.999, max = 0.999))]
     pub g: f32,
 }

@@ -6,8 +6,9 @@
 //! where little gets through. The walk's own weight stands for T̂, and m̂ is a glance ahead. Since
 //! such a majorant depends on the walk's history, it is for the emission's own walk only.
 
-use super::{RayEmission, RayKind, by_rate, least_rate};
-use crate::transport::tracking::EMISSION_FLOOR;
+use super::ratio;
+use super::ray::{RayEmission, RayKind};
+use crate::transport::tracking::majorant::{EMISSION_FLOOR, least_rate};
 use crate::{
     math::{PathRng, Rgb},
     volume::{medium::Segment, world::MediumRay},
@@ -30,7 +31,7 @@ pub(in crate::transport) fn gather(
         _ => 0.0,
     };
     let mut majorant = OptimalMajorant { looks: ray_kind.share(looks), ahead };
-    by_rate(medium, |segment, weight| majorant.rate(segment, weight), rng)
+    ratio::gather(medium, |segment, weight| majorant.rate(segment, weight), rng)
 }
 
 struct OptimalMajorant {

@@ -7,8 +7,9 @@
 
 use std::ops::ControlFlow;
 
-use super::{RayEmission, RayKind, attenuated};
-use crate::transport::tracking::{EMISSION_FLOOR, MOST_COLLISIONS};
+use super::ray::{RayEmission, RayKind, attenuated};
+use crate::transport::tracking::MOST_COLLISIONS;
+use crate::transport::tracking::majorant::EMISSION_FLOOR;
 use crate::transport::transmittance::{Comb, Transmittance};
 use crate::{
     math::{PathRng, Rgb, Slot},

@@ -1,8 +1,8 @@
 //! What a path costs, counted instead of timed, so that what is learned from it is the same wherever
 //! and whenever it is learned.
 
-use crate::transport::PathSample;
 use crate::transport::observer::{Observer, PathStep};
+use crate::transport::sample::PathSample;
 
 /// What a ray or a vertex costs beside the steps, in tracking steps. Measured on the scenes of the
 /// noise benchmark: good to a factor of two, and between two strategies on one scene to a quarter.

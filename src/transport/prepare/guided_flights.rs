@@ -12,9 +12,12 @@ use glam::UVec2;
 
 use super::cost::Cost;
 use super::pilot_pixel::{PilotPixel, half_square};
-use crate::math::luminance;
-use crate::transport::path::PathContext;
+use crate::transport::context::PathContext;
 use crate::transport::scene::Scene;
+use crate::{
+    error::{Progress, Result, report},
+    math::luminance,
+};
 
 /// The shares that are tried, relative to the flights that the probes propose.
 const TRIED: [f32; 4] = [0.0, 0.06, 0.25, 1.0];
@@ -31,29 +34,34 @@ const MARGIN: f64 = 0.8;
 
 /// The share that lowers variance times cost most for `scene` on a film of `size`; `context` are those
 /// of a share.
+///
+/// # Errors
+/// [`Error::Cancelled`](crate::error::Error::Cancelled) where `progress` says so.
 pub(in crate::transport) fn flights<'s>(
     scene: &Scene,
     size: UVec2,
     context: impl Fn(f32) -> PathContext<'s> + Sync,
-) -> f32 {
+    progress: Progress,
+) -> Result<f32> {
     if size.min_element() == 0 {
-        return FIRST;
+        return Ok(FIRST);
     }
-    let mut trials = [ShareTrial::default(); TRIED.len()];
+    let mut trials = TRIED.map(|_| None);
     // Threads of their own: a worker that waits here for others might take up a sample meanwhile
     // that waits for this.
     std::thread::scope(|scope| {
         for (trial, share) in trials.iter_mut().zip(TRIED) {
             let context = context(share);
-            let work = move || *trial = ShareTrial::new(scene, size, context);
+            let work = move || *trial = Some(ShareTrial::new(scene, size, context, progress));
             // Where the system refuses a thread, this one does the work below.
             let _ = std::thread::Builder::new().name("pilot".to_owned()).spawn_scoped(scope, work);
         }
     });
-    for (trial, share) in trials.iter_mut().zip(TRIED).filter(|(trial, _)| trial.cost == 0.0) {
-        *trial = ShareTrial::new(scene, size, context(share));
+    let mut done = [ShareTrial::default(); TRIED.len()];
+    for ((done, trial), share) in done.iter_mut().zip(trials).zip(TRIED) {
+        *done = trial.unwrap_or_else(|| ShareTrial::new(scene, size, context(share), progress))?;
     }
-    best(&trials)
+    Ok(best(&done))
 }
 
 /// The share with the least variance times cost, if it is clearly better than none.
@@ -83,9 +91,15 @@ struct ShareTrial {
 }
 
 impl ShareTrial {
-    fn new(scene: &Scene, size: UVec2, context: PathContext<'_>) -> Self {
+    fn new(
+        scene: &Scene,
+        size: UVec2,
+        context: PathContext<'_>,
+        progress: Progress,
+    ) -> Result<Self> {
         let (mut trial, mut pilot_pixels) = (Self::default(), 0);
         while trial.cost < BUDGET && pilot_pixels < MOST_PILOT_PIXELS {
+            report(progress, (trial.cost / BUDGET) as f32)?;
             let pilot_pixel = PilotPixel::new(scene, size, pilot_pixels);
             let guides =
                 if context.flights > 0.0 && pilot_pixel.meets_medium() { GUIDE_COST } else { 0.0 };
@@ -102,11 +116,11 @@ impl ShareTrial {
         }
         let pilot_pixels = f64::from(pilot_pixels);
         let Self { scattered, emission, cost } = trial;
-        Self {
+        Ok(Self {
             scattered: scattered / pilot_pixels,
             emission: emission / pilot_pixels,
             cost: cost / pilot_pixels,
-        }
+        })
     }
 }
 
@@ -115,7 +129,8 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::transport::Frame;
+    use crate::error::NO_PROGRESS;
+    use crate::transport::PreparedFrame;
 
     const SIZE: UVec2 = UVec2::new(48, 32);
 
@@ -152,8 +167,8 @@ mod tests {
         radiance = 100.0
     "#;
 
-    fn frame(text: &str) -> Frame {
-        Frame::new(Arc::new(Scene::of_text(text)), SIZE, 0)
+    fn frame(text: &str) -> PreparedFrame {
+        PreparedFrame::new(Arc::new(Scene::of_text(text)), SIZE, 0, NO_PROGRESS).unwrap()
     }
 
     #[test]
@@ -187,14 +202,13 @@ mod tests {
         }
     }
 
-    /// Whoever asks first, however many others wait: from the second sample on all is as found.
+    /// The pilot pass finds the same on any thread, however many run at once.
     #[test]
-    fn whoever_asks_gets_the_same() {
+    fn every_pilot_pass_finds_the_same() {
         use rayon::prelude::*;
-        let alone = frame(LAMP);
-        let expected = alone.guided_flights();
-        let shared = frame(LAMP);
-        let found: Vec<f32> = (0..64).into_par_iter().map(|_| shared.guided_flights()).collect();
+        let expected = frame(LAMP).guided_flights();
+        let found: Vec<f32> =
+            (0..3).into_par_iter().map(|_| frame(LAMP).guided_flights()).collect();
         assert!(found.iter().all(|flights| *flights == expected), "{expected}, {found:?}");
     }
 }

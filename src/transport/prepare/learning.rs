@@ -12,13 +12,15 @@ use glam::{UVec2, Vec3A};
 use rayon::prelude::*;
 
 use super::cost::Cost;
+use crate::transport::context::PathContext;
 use crate::transport::emission::EmissionEstimator;
 use crate::transport::path;
-use crate::transport::path::PathContext;
-use crate::transport::probes::{Brightness, Indirect, Probes, SEED};
+use crate::transport::probes::stages::{CAUSTICS_FOUND, SEED};
+use crate::transport::probes::{Brightness, Indirect, Probes};
 use crate::transport::scene::Scene;
 use crate::transport::strategy::{Advanced, Preset, Strategy};
 use crate::{
+    error::{Progress, Result, report},
     math::{Aabb, PathRng, Ray, luminance},
     sampling::warp::spherical,
 };
@@ -32,34 +34,12 @@ const MOST_TURNS: u32 = 64;
 /// Steps of two numbers that fill the unit square evenly, however many there are (Roberts 2018).
 const EVEN_STEPS: [f32; 2] = [0.754_877_7, 0.569_840_3];
 
-impl Probes {
-    /// The probes for `scene`, if its strategy asks for any and anything scatters. The same scene
-    /// always gets the same ones.
-    pub fn new(scene: &Scene) -> Option<Self> {
-        Self::unless(scene, &|| false)
-    }
-
-    /// The same, but given up, with `None`, once `stop` says so.
-    pub fn unless(scene: &Scene, stop: &(dyn Fn() -> bool + Sync)) -> Option<Self> {
-        let mut probes = Self::placed(scene, stop)?;
-        let (guides, advanced) = (scene.strategy.guides(), &scene.strategy.advanced);
-        if advanced.guide_caustics && guides {
-            probes.find_caustics(scene, stop)?;
-        }
-        if advanced.probe_learning && guides {
-            let learned = learned(&probes, scene, stop)?;
-            probes.learn(&learned);
-        }
-        Some(probes)
-    }
-}
-
-/// What each leaf learns; `None` when stopped.
-fn learned(
+/// The light that arrives indirectly in each leaf of `probes`, by paths that set out from there.
+pub(super) fn indirect_light(
     probes: &Probes,
     scene: &Scene,
-    stop: &(dyn Fn() -> bool + Sync),
-) -> Option<Vec<(u32, Indirect)>> {
+    progress: Progress,
+) -> Result<Vec<(u32, Indirect)>> {
     let turns = match scene.max_scatters {
         0 => MOST_TURNS,
         most => most.min(MOST_TURNS),
@@ -70,7 +50,7 @@ fn learned(
     };
     let strategy = Strategy { advanced, ..Preset::Full.strategy() };
     let scene = Scene { max_scatters: turns, strategy, ..scene.clone() };
-    let emission_estimator = EmissionEstimator::at_a_glance();
+    let emission_estimator = EmissionEstimator::coarse();
     let brightness = Brightness::default();
     let context = PathContext {
         emission_estimator: &emission_estimator,
@@ -79,18 +59,24 @@ fn learned(
         flights: 1.0,
     };
     let learn = |(node, bounds): &(u32, Aabb)| {
-        (!stop()).then(|| (*node, around(&scene, context, *node, bounds)))
+        Ok((*node, around(&scene, context, (*node, bounds), progress)?))
     };
     probes.leaves().par_iter().map(learn).collect()
 }
 
 /// The light that arrives indirectly in a leaf.
-fn around(scene: &Scene, context: PathContext<'_>, node: u32, bounds: &Aabb) -> Indirect {
+fn around(
+    scene: &Scene,
+    context: PathContext<'_>,
+    (node, bounds): (u32, &Aabb),
+    progress: Progress,
+) -> Result<Indirect> {
     let mut indirect = Indirect::default();
     let mut rng = PathRng::new(SEED, UVec2::new(node, 2), PATHS);
     let begin = [rng.uniform(), rng.uniform()];
     let (mut paths, mut spent) = (0, 0.0);
     while paths < PATHS && spent < COST_BUDGET {
+        report(progress, CAUSTICS_FOUND)?;
         let mut rng = PathRng::new(SEED, UVec2::new(node, 2), paths);
         let u = Vec3A::new(rng.uniform(), rng.uniform(), rng.uniform());
         let even = |k: usize| (begin[k] + paths as f32 * EVEN_STEPS[k]).fract();
@@ -102,5 +88,5 @@ fn around(scene: &Scene, context: PathContext<'_>, node: u32, bounds: &Aabb) -> 
         paths += 1;
         spent += cost.of(&sample);
     }
-    indirect.scaled(1.0 / paths.max(1) as f32)
+    Ok(indirect.scaled(1.0 / paths.max(1) as f32))
 }

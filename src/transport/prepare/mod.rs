@@ -1,7 +1,51 @@
-//! Paths that are traced before the picture, to find out what pays in it.
+//! Paths that are traced before the picture, to find out what pays in it: k of the optimal
+//! majorant, what probes learn, how many guided flights the camera rays get.
+//!
+//! All of it is fixed by the scene, the strategy and the size of the film, never by the seed, the
+//! time or the number of threads, and costs are counted in steps, so that the same picture is
+//! always prepared in the same way.
 
-pub(super) mod cost;
+mod cost;
 pub(super) mod guided_flights;
-pub(super) mod learning;
-pub(super) mod optimal_majorant;
-pub(super) mod pilot_pixel;
+mod learning;
+mod optimal_majorant;
+mod pilot_pixel;
+
+use glam::UVec2;
+
+use super::emission::EmissionEstimator;
+use super::probes::Probes;
+use super::scene::Scene;
+use crate::error::{Progress, Result};
+
+/// The emission walk for a picture of `size` pixels. The optimal majorant takes a few milliseconds
+/// to be fitted; nothing else is measured.
+pub(super) fn emission_estimator(
+    scene: &Scene,
+    size: UVec2,
+    progress: Progress,
+) -> Result<EmissionEstimator> {
+    let fitted = match EmissionEstimator::is_fitted(&scene.strategy) {
+        true => optimal_majorant::looks(scene, size, progress)?,
+        false => 0.0,
+    };
+    Ok(EmissionEstimator::new(&scene.strategy, fitted))
+}
+
+/// The probes for `scene`, if its strategy asks for any and anything scatters. The same scene
+/// always gets the same ones. `progress` is asked after every few paths, from many threads at once.
+///
+/// # Errors
+/// [`Error::Cancelled`](crate::error::Error::Cancelled) where `progress` says so.
+pub fn probes(scene: &Scene, progress: Progress) -> Result<Option<Probes>> {
+    let Some(mut probes) = Probes::placed(scene, progress)? else { return Ok(None) };
+    let (guides, advanced) = (scene.strategy.guides(), &scene.strategy.advanced);
+    if advanced.guide_caustics && guides {
+        probes.find_caustics(scene, progress)?;
+    }
+    if advanced.probe_learning && guides {
+        let learned = learning::indirect_light(&probes, scene, progress)?;
+        probes.learn(&learned);
+    }
+    Ok(Some(probes))
+}

@@ -8,10 +8,12 @@
 use glam::UVec2;
 
 use super::pilot_pixel::{PilotPixel, half_square};
+use crate::error::{Progress, Result, report};
 use crate::math::luminance;
-use crate::transport::emission::{EmissionEstimator, RayKind};
+use crate::transport::context::PathContext;
+use crate::transport::emission::EmissionEstimator;
+use crate::transport::emission::ray::RayKind;
 use crate::transport::observer::Nobody;
-use crate::transport::path::PathContext;
 use crate::transport::probes::Brightness;
 use crate::transport::scene::Scene;
 
@@ -34,8 +36,11 @@ const DEAREST: f64 = 8.0;
 const RANGE: [f64; 2] = [1.0, 4096.0];
 
 /// The k that lowers variance times cost most for camera rays of `scene` on a film of `size`.
-pub(in crate::transport) fn looks(scene: &Scene, size: UVec2) -> f32 {
-    measure(scene, size).optimum().unwrap_or(UNMEASURED)
+///
+/// # Errors
+/// [`Error::Cancelled`](crate::error::Error::Cancelled) where `progress` says so.
+pub(in crate::transport) fn looks(scene: &Scene, size: UVec2, progress: Progress) -> Result<f32> {
+    Ok(measure(scene, size, progress)?.optimum().unwrap_or(UNMEASURED))
 }
 
 /// Sums over the sites.
@@ -55,23 +60,24 @@ struct Measured {
     spent: u32,
 }
 
-fn measure(scene: &Scene, size: UVec2) -> Measured {
+fn measure(scene: &Scene, size: UVec2, progress: Progress) -> Result<Measured> {
     let mut sums = Measured::default();
     let emits = scene.world.instances().iter().any(|i| i.volume().chords().max_element() > 0.0);
     if !emits || size.min_element() == 0 {
-        return sums;
+        return Ok(sums);
     }
     while sums.pilot_pixels < MOST_PILOT_PIXELS
         && sums.searched < MOST_SEARCHED
         && sums.spent < MOST_STEPS
     {
+        report(progress, sums.spent as f32 / MOST_STEPS as f32)?;
         let pilot_pixel = PilotPixel::new(scene, size, sums.searched);
         sums.searched += 1;
         if pilot_pixel.emits(&mut sums.spent) {
             sums.add(&pilot_pixel);
         }
     }
-    sums
+    Ok(sums)
 }
 
 impl Measured {
@@ -154,9 +160,17 @@ mod tests {
     use glam::Vec2;
 
     use super::*;
-    use crate::{math::PathRng, transport::path};
+    use crate::{error::NO_PROGRESS, math::PathRng, transport::path};
 
     const SIZE: UVec2 = UVec2::new(24, 24);
+
+    fn looks(scene: &Scene, size: UVec2) -> f32 {
+        super::looks(scene, size, NO_PROGRESS).unwrap()
+    }
+
+    fn measure(scene: &Scene, size: UVec2) -> Measured {
+        super::measure(scene, size, NO_PROGRESS).unwrap()
+    }
 
     const CAMERA: &str = r#"
         [camera]

@@ -2,10 +2,11 @@
 
 use glam::{UVec2, Vec2};
 
+use crate::transport::context::PathContext;
 use crate::transport::observer::Observer;
-use crate::transport::path::PathContext;
+use crate::transport::path;
+use crate::transport::sample::PathSample;
 use crate::transport::scene::Scene;
-use crate::transport::{PathSample, path};
 use crate::{
     math::{PathRng, Ray},
     surface,

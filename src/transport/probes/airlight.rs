@@ -5,6 +5,7 @@ use std::f32::consts::TAU;
 use glam::{UVec2, Vec3A};
 
 use crate::{
+    error::{Progress, Result, report},
     light::Emitter,
     math::{PathRng, Ray, Rgb, mean},
     sampling::warp::spherical,
@@ -12,7 +13,7 @@ use crate::{
     transport::{
         scene::Scene,
         strategy::Preset,
-        tracking::{self, Event},
+        tracking::{event::Event, scattering::scatter},
     },
 };
 
@@ -21,26 +22,27 @@ const RAYS: u32 = 256;
 
 /// The share of the light of all lights that are somewhere which is scattered at least once, the
 /// albedo included; 0 where there are none.
-pub(super) fn scattered_share(scene: &Scene) -> f32 {
+pub(super) fn scattered_share(scene: &Scene, progress: Progress) -> Result<f32> {
     let emitters = scene.lights.emitters(&scene.world);
     let intensity = |emitter: &Emitter| f64::from(emitter.intensity.clamp(0.0, f32::MAX));
     let total: f64 = emitters.iter().map(intensity).sum();
     if total <= 0.0 {
-        return 0.0;
+        return Ok(0.0);
     }
     let (mut chosen, mut passed) = (0, 0.0);
-    let scattered: f32 = (0..RAYS)
-        .map(|i| {
-            let wanted = (f64::from(i) + 0.5) / f64::from(RAYS) * total;
-            while chosen + 1 < emitters.len() && passed + intensity(&emitters[chosen]) < wanted {
-                passed += intensity(&emitters[chosen]);
-                chosen += 1;
-            }
-            scattered_of(scene, &emitters[chosen], &mut PathRng::new(super::SEED, UVec2::Y, i))
-        })
-        .sum();
+    let of_ray = |i: u32| {
+        report(progress, 0.0)?;
+        let wanted = (f64::from(i) + 0.5) / f64::from(RAYS) * total;
+        while chosen + 1 < emitters.len() && passed + intensity(&emitters[chosen]) < wanted {
+            passed += intensity(&emitters[chosen]);
+            chosen += 1;
+        }
+        let mut rng = PathRng::new(super::stages::SEED, UVec2::Y, i);
+        Ok(scattered_of(scene, &emitters[chosen], &mut rng))
+    };
+    let scattered: f32 = (0..RAYS).map(of_ray).sum::<Result<f32>>()?;
     let share = scattered / RAYS as f32;
-    if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 }
+    Ok(if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 })
 }
 
 /// Of one ray from a light.
@@ -58,7 +60,7 @@ fn scattered_of(scene: &Scene, emitter: &Emitter, rng: &mut PathRng) -> f32 {
     let t_max = end.map_or(f32::INFINITY, |end| size + end.hit.t);
     let medium = scene.world.along(Ray::new(origin, direction), t_max);
     let strategy = Preset::Full.strategy();
-    let flight = tracking::scatter(medium, &strategy, Rgb::ONE, rng.exponential(), rng);
+    let flight = scatter(medium, &strategy, Rgb::ONE, rng.exponential(), rng);
     match flight.event {
         Event::Scattered { .. } => mean(flight.weight),
         _ => 0.0,

@@ -2,8 +2,10 @@
 
 use glam::{UVec2, Vec2};
 
-use super::{Probes, SEED};
+use super::probes::Probes;
+use super::stages::SEED;
 use crate::{
+    error::{Progress, Result, report},
     math::{PathRng, luminance},
     surface,
     transport::{direct, emission::EmissionEstimator, scene::Scene, vertex::Vertex},
@@ -23,23 +25,25 @@ pub struct Brightness {
 }
 
 impl Brightness {
-    /// That of a film of `size` pixels.
-    pub fn new(probes: &Probes, scene: &Scene, size: UVec2) -> Self {
+    /// Brightness of a film of `size` pixels.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`](crate::error::Error::Cancelled) where `progress` says so.
+    pub fn new(probes: &Probes, scene: &Scene, size: UVec2, progress: Progress) -> Result<Self> {
         let (mut scattered, mut reflected) = (0.0, 0.0);
         for i in 0..SIDE * SIDE {
+            report(progress, i as f32 / (SIDE * SIDE) as f32)?;
             let [one, other] = light_along(probes, scene, size, i);
             scattered += one;
             reflected += other;
         }
         let share = scattered / (scattered + reflected);
-        Self {
+        Ok(Self {
             scattered: scattered / (SIDE * SIDE) as f32,
             share: if share.is_finite() { share } else { 1.0 },
-        }
+        })
     }
-}
 
-impl Brightness {
     /// With so many times the guided flights.
     pub fn scaled(self, flights: f32) -> Self {
         Self { share: self.share * flights, ..self }
@@ -60,7 +64,7 @@ fn light_along(probes: &Probes, scene: &Scene, size: UVec2, index: u32) -> [f32;
     };
     let mut rng = PathRng::new(SEED, UVec2::new(index, 1), 0);
     let (emission_estimator, choice) =
-        (EmissionEstimator::at_a_glance(), direct::choice(&scene.strategy));
+        (EmissionEstimator::coarse(), direct::choice(&scene.strategy));
     let look = direct::sample_lights(scene, &emission_estimator, &vertex, &choice, &mut rng);
     let reflected = luminance(look.light)
         * distance_pdf.map_or(1.0, |distance_pdf| distance_pdf.transmittance());

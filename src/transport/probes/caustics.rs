@@ -10,12 +10,15 @@
 use glam::{UVec2, Vec2, Vec3A};
 use rayon::prelude::*;
 
-use super::{PhotonSegment, Probes, SEED};
+use super::caustic_lobes::PhotonSegment;
+use super::probes::Probes;
+use super::stages::{PLACED, SEED};
 use crate::transport::direct;
 use crate::transport::emission::EmissionEstimator;
 use crate::transport::scene::Scene;
 use crate::transport::vertex::Vertex;
 use crate::{
+    error::{Progress, Result, report},
     light::Receiver,
     math::{OrthonormalBasis, PathRng, Ray, luminance},
     sampling::warp::uniform_disk,
@@ -32,15 +35,18 @@ const MOST_ALPHA: f32 = 0.3;
 const FAR: f32 = 100.0;
 
 impl Probes {
-    /// Finds the bundles of light that metals throw into the medium; `None` when stopped.
+    /// Finds the bundles of light that metals throw into the medium.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`](crate::error::Error::Cancelled) where `progress` says so.
     pub(in crate::transport) fn find_caustics(
         &mut self,
         scene: &Scene,
-        stop: &(dyn Fn() -> bool + Sync),
-    ) -> Option<()> {
+        progress: Progress,
+    ) -> Result<()> {
         let metals = metals(scene);
         if metals.is_empty() {
-            return Some(());
+            return Ok(());
         }
         let mut volumes = vec![0.0; self.len()];
         for (leaf, bounds) in self.leaves() {
@@ -48,21 +54,22 @@ impl Probes {
         }
         let tracer = PhotonTracer {
             scene,
-            emission_estimator: EmissionEstimator::at_a_glance(),
+            emission_estimator: EmissionEstimator::coarse(),
             probes: self,
             volumes,
         };
         let cast = |i: u32| {
             let metal = metals[i as usize % metals.len()];
-            (!stop()).then(|| tracer.cast(metal, i).unwrap_or_default())
+            report(progress, PLACED)?;
+            Ok(tracer.cast(metal, i).unwrap_or_default())
         };
         let share = metals.len() as f32 / RAYS as f32;
-        let segments: Option<Vec<Vec<PhotonSegment>>> =
+        let segments: Result<Vec<Vec<PhotonSegment>>> =
             (0..RAYS).into_par_iter().map(cast).collect();
         let mut segments = segments?.concat();
         segments.iter_mut().for_each(|segment| segment.fluence *= share);
         self.take_photon_segments(segments);
-        Some(())
+        Ok(())
     }
 }
 

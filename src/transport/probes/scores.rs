@@ -17,7 +17,7 @@ const TRIES: u32 = 3;
 /// Those of the lights around `bounds`, for the probe of a node; `None` where none is seen. The
 /// lights are chosen by the hierarchy, evenly spread over its choices.
 pub(super) fn scores(scene: &Scene, node: u32, bounds: &Aabb) -> Option<Scores> {
-    let mut rng = PathRng::new(super::SEED, UVec2::new(node, 1), 1);
+    let mut rng = PathRng::new(super::stages::SEED, UVec2::new(node, 1), 1);
     let offset = f64::from(rng.uniform());
     let look = |look: u32| {
         let pick = (f64::from(look) + offset) / f64::from(LOOKS);

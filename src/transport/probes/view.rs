@@ -2,7 +2,10 @@
 
 use glam::Vec3A;
 
-use super::{CausticLobe, Probe, Probes, child_of, in_scattered};
+use super::caustic_lobes::CausticLobe;
+use super::octree::child_of;
+use super::probe::Probe;
+use super::probes::{Probes, in_scattered};
 use crate::math::Aabb;
 
 /// A probe in its place.

@@ -2,7 +2,9 @@
 
 use std::ops::ControlFlow;
 
-use super::{Collision, Event, Flight, Scattering, Walk, null_coefficient, track};
+use super::event::{Event, Flight};
+use super::scattering::Scattering;
+use super::{Collision, Walk, null_coefficient, track};
 use crate::{
     math::{PathRng, Rgb, mean},
     transport::strategy::Strategy,
@@ -13,7 +15,7 @@ use crate::{
 /// lower bound of μ_t in each segment, so that a collision with it is real without a look at the
 /// medium. Both components' collisions come from one process of rate μ̄, of which a share
 /// P_c ∝ the channels' mean of w·μ_c is the control's; among the rest, P ∝ the mean of w·μ_r and of
-/// w·μ_n, as [`super::scatter`] chooses. Uniform segments are all control: their closed form.
+/// w·μ_n, as [`super::scattering::scatter`] chooses. Uniform segments are all control: their closed form.
 ///
 /// Unbiased in every channel. It gathers no emission, and where the control scatters it does not
 /// know μ_t, so that the density of the flight, `pdf_null`, stays unknown and 0.
@@ -26,7 +28,7 @@ pub fn scatter(
     optical_distance: f32,
     rng: &mut PathRng,
 ) -> Flight {
-    let scattering = Scattering::new(strategy, throughput, f32::INFINITY);
+    let scattering = Scattering::new(strategy, throughput);
     let mut walk = Decomposition { scattering, control: Rgb::ZERO };
     let collisions = track(medium, optical_distance, rng, &mut walk);
     walk.scattering.flight(collisions)
@@ -53,11 +55,11 @@ impl Walk for Decomposition {
         at: &Collision,
         rng: &mut PathRng,
     ) -> ControlFlow<()> {
-        let color = self.scattering.throughput * self.scattering.weight;
+        let color = self.scattering.state.throughput * self.scattering.state.weight;
         let total = mean(color) * at.rate;
         if !(total > 0.0 && total.is_finite()) {
             // Nothing is left to follow; what is no number stays one and is counted.
-            return self.end(total, at.t);
+            return self.scattering.end(total, at.t);
         }
         let control = mean(color * self.control);
         let u = rng.uniform() * total;
@@ -69,7 +71,7 @@ impl Walk for Decomposition {
         let (mu_r, mu_n) = ((mu_t - self.control).max(Rgb::ZERO), null_coefficient(at.rate, mu_t));
         let [real, null] = [mu_r, mu_n].map(|mu| mean(color * mu));
         if !(real + null).is_finite() {
-            return self.end(real + null, at.t);
+            return self.scattering.end(real + null, at.t);
         }
         // 1 / (μ̄ P) is `odds` over the event's share; there may be no rest but by rounding.
         let odds = total / (total - control) * (real + null) / at.rate;
@@ -77,7 +79,7 @@ impl Walk for Decomposition {
             return self.real(medium, at, mu_r * (odds / real));
         }
         if null > 0.0 {
-            self.scattering.weight *= mu_n * (odds / null);
+            self.scattering.state.weight *= mu_n * (odds / null);
         }
         ControlFlow::Continue(())
     }
@@ -90,15 +92,9 @@ impl Decomposition {
         self.scattering.event = if albedo == Rgb::ZERO {
             Event::Absorbed { t: at.t, real: true }
         } else {
-            self.scattering.weight *= factor * albedo;
+            self.scattering.state.weight *= factor * albedo;
             Event::Scattered { t: at.t, phase }
         };
-        ControlFlow::Break(())
-    }
-
-    fn end(&mut self, factor: f32, t: f32) -> ControlFlow<()> {
-        self.scattering.weight *= factor;
-        self.scattering.event = Event::Absorbed { t, real: false };
         ControlFlow::Break(())
     }
 }

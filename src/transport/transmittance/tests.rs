@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::{Affine3A, DVec3, UVec2, Vec3A};
 
 use super::*;
+use crate::error::NO_PROGRESS;
 use crate::math::{Aabb, Ray, Slot};
 use crate::volume::emission::Emission;
 use crate::volume::field::{RgbField, ScalarField};
@@ -33,7 +34,7 @@ fn world(noise_scale: Rgb, ball: f32) -> World {
     let noisy = properties(ScalarField::Noise(noise), noise_scale);
     let even = properties(ScalarField::Constant(1.0), Rgb::splat(ball));
     let volumes = [
-        Volume::varying(bounds, noisy, Vec3A::splat(0.45), None),
+        Volume::varying(bounds, noisy, Vec3A::splat(0.45), None, NO_PROGRESS).unwrap(),
         Volume::uniform(Region::Sphere { radius: 0.6 }, even),
     ];
     World::new(volumes.map(|v| Instance::new(Arc::new(v), Affine3A::IDENTITY)).into())

@@ -11,9 +11,10 @@ use glam::IVec3;
 use rayon::prelude::*;
 
 use super::bricks::{Brick, BrickRange, BrickSource, fill, union};
-use super::builder::{BlockOrigin, NodeRegion, Parts};
 use super::index::{BrickNumbers, Index, NODE_BRICKS, NODE_EDGE, node_of};
-use super::{SparseGrid, Voxel};
+use super::parts::{BlockOrigin, NodeRegion, Parts};
+use super::sparse_grid::SparseGrid;
+use super::voxel::Voxel;
 use crate::error::{Error, Progress, Result};
 
 /// Blocks along the edge of a node with the first of the next one.

@@ -2,7 +2,7 @@
 
 use glam::{IVec3, Vec3A};
 
-use super::Voxel;
+use super::voxel::Voxel;
 
 /// Cells along the edge of a brick.
 pub(super) const BRICK_EDGE: i32 = 8;

@@ -7,8 +7,12 @@ use rayon::prelude::*;
 
 use super::assemble::assemble;
 use super::index::{NODE_BRICKS, brick_in_node, node_of};
+use super::index_box::IndexBox;
+use super::leaf::Leaf;
+use super::parts::{BlockOrigin, NodeRegion, Parts};
+use super::sparse_grid::SparseGrid;
 use super::stats::GridSummary;
-use super::{IndexBox, SparseGrid, Voxel};
+use super::voxel::Voxel;
 use crate::error::{Error, NO_PROGRESS, Progress, Result};
 
 /// Voxels along the edge of a leaf.
@@ -19,61 +23,6 @@ const MAX_TILE_NODES: u64 = 1 << 22;
 
 /// Leaves summed up between two looks at whether the work was cancelled.
 const LEAVES_PER_STEP: usize = 256;
-
-/// 8x8x8 voxels.
-#[derive(Clone)]
-pub struct Leaf<V> {
-    /// The first voxel, a multiple of 8.
-    pub origin: IVec3,
-    /// The values, z fastest.
-    pub values: [V; 512],
-    /// One bit a voxel in the same order, lowest bit first.
-    pub active: [u64; 8],
-}
-
-impl<V> Leaf<V> {
-    /// The position of the voxel whose value is stored at `offset`.
-    pub(super) fn voxel(&self, offset: usize) -> IVec3 {
-        self.origin
-            + IVec3::new((offset >> 6) as i32, (offset >> 3 & 7) as i32, (offset & 7) as i32)
-    }
-}
-
-/// Where a block of 8 voxels a side gets its values: a leaf or, with the top bit clear, a constant.
-#[derive(Clone, Copy, PartialEq, Eq, Hash)]
-pub(super) struct BlockOrigin(u32);
-
-impl BlockOrigin {
-    const LEAF: u32 = 1 << 31;
-    /// The constant that is the background.
-    pub const BACKGROUND: Self = Self(0);
-
-    /// The number of the leaf, if it is one.
-    pub fn leaf(self) -> Option<usize> {
-        (self.0 & Self::LEAF != 0).then_some((self.0 & !Self::LEAF) as usize)
-    }
-
-    /// The number of the constant; only for what is not a leaf.
-    pub fn constant(self) -> usize {
-        self.0 as usize
-    }
-}
-
-/// What a node's region of 128 voxels a side holds.
-#[derive(Clone)]
-pub(super) enum NodeRegion {
-    Constant(BlockOrigin),
-    Blocks(Box<[BlockOrigin; NODE_BRICKS]>),
-}
-
-/// Everything that the grid is assembled from.
-pub(super) struct Parts<V> {
-    /// Values of the constants; the first is the background.
-    pub constants: Vec<V>,
-    pub leaves: Vec<Leaf<V>>,
-    pub regions: HashMap<IVec3, NodeRegion>,
-    pub summary: GridSummary<V>,
-}
 
 /// Gathers the leaves and tiles of a grid, which are not meant to overlap; leaves win over tiles.
 pub struct GridBuilder<V> {
@@ -161,7 +110,7 @@ impl<V: Voxel> GridBuilder<V> {
             let (origin, value) = (*origin, values[0]);
             let from = match is_constant {
                 true => self.constant(value),
-                false => BlockOrigin(BlockOrigin::LEAF | number as u32),
+                false => BlockOrigin::of_leaf(number),
             };
             self.set_block(origin, from);
         }
@@ -169,7 +118,7 @@ impl<V: Voxel> GridBuilder<V> {
         assemble(Parts { constants, leaves, regions, summary }, progress)
     }
 
-    /// Of each leaf its sums, and whether all its values are one.
+    /// The sums of each leaf, and whether all its values are one.
     fn summarize(&mut self, progress: Progress) -> Result<Vec<(GridSummary<V>, bool)>> {
         let background = self.background();
         let mut summaries = vec![(GridSummary::empty(), false); self.leaves.len()];
@@ -196,7 +145,7 @@ impl<V: Voxel> GridBuilder<V> {
         }
         *self.constant_ids.entry(value.bits()).or_insert_with(|| {
             self.constants.push(value);
-            BlockOrigin(self.constants.len() as u32 - 1)
+            BlockOrigin::of_constant(self.constants.len() - 1)
         })
     }
 

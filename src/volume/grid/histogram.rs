@@ -3,7 +3,8 @@
 use rayon::prelude::*;
 
 use super::bricks::{BRICK_EDGE, Brick, sample_at};
-use super::{SparseGrid, Voxel};
+use super::sparse_grid::SparseGrid;
+use super::voxel::Voxel;
 use glam::IVec3;
 
 /// Parts of equal width that a range of values is divided into.

@@ -2,7 +2,7 @@
 
 use glam::{IVec3, UVec3};
 
-use super::IndexBox;
+use super::index_box::IndexBox;
 
 /// log2 of the bricks along the edge of a node, of a brick's edge and of a node's, in voxels.
 const NODE_BITS: i32 = 4;

@@ -4,7 +4,9 @@ use glam::{IVec3, Vec3};
 
 use super::bricks::{BRICK_EDGE, union};
 use super::index::{node_box, node_of};
-use super::{IndexBox, SparseGrid, Voxel};
+use super::index_box::IndexBox;
+use super::sparse_grid::SparseGrid;
+use super::voxel::Voxel;
 
 impl<V: Voxel> SparseGrid<V> {
     /// The smallest and largest value, by component, that [`sample`](Self::sample) can return in

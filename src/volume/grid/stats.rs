@@ -1,6 +1,8 @@
-//! What a grid holds, gathered while it is built.
+//! Figures of a grid's values, gathered while it is built.
 
-use super::{IndexBox, Leaf, Voxel};
+use super::index_box::IndexBox;
+use super::leaf::Leaf;
+use super::voxel::Voxel;
 
 /// Figures of a grid's active voxels (tiles weigh as the voxels they stand for) and its size.
 #[derive(Clone, Copy, Debug, PartialEq)]

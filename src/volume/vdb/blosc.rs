@@ -5,7 +5,7 @@
 //! packed), the start of each block, and the blocks. A block is one stream or one for each byte of
 //! an item, each after its packed size.
 
-use super::compression::Inflate;
+use super::inflate::Inflate;
 
 const HEADER: usize = 16;
 const SHUFFLED: u8 = 1;

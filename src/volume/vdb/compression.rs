@@ -1,8 +1,7 @@
 //! The codecs that buffers of values are stored with.
 
-use flate2::{Decompress, FlushDecompress, Status};
-
 use super::blosc;
+use super::inflate::Inflate;
 use super::stream::{Result, Stream};
 
 /// The compression flags of a file or a grid.
@@ -81,20 +80,6 @@ pub(super) struct Codec {
     inflate: Inflate,
     unpacked: Vec<u8>,
     blosc: blosc::Scratch,
-}
-
-/// Unpacks zlib streams.
-#[derive(Default)]
-pub(super) struct Inflate(Option<Decompress>);
-
-impl Inflate {
-    /// Unpacks `source`; false unless it is sound and fills `target` exactly.
-    pub fn unpack(&mut self, source: &[u8], target: &mut [u8]) -> bool {
-        let state = self.0.get_or_insert_with(|| Decompress::new(true));
-        state.reset(true);
-        let status = state.decompress(source, target, FlushDecompress::Finish);
-        matches!(status, Ok(Status::StreamEnd)) && state.total_out() == target.len() as u64
-    }
 }
 
 impl Codec {

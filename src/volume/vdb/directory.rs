@@ -1,4 +1,4 @@
-//! What a file holds, known without reading its voxels.
+//! The list of a file's grids, known without reading their voxels.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -7,11 +7,11 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::entry::{GridInfo, TreePlace};
+use super::file::{VdbFile, VdbGrid, VdbValues};
 use super::header::VdbHeader;
 use super::metadata::{self, Metadata};
 use super::stream::{Fault, Result as Step, Stream};
 use super::tree::{self, Tree};
-use super::{VdbFile, VdbGrid, VdbValues};
 use crate::error::{Error, Progress, Result};
 use crate::volume::grid::{SparseGrid, Voxel};
 

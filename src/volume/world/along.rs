@@ -3,7 +3,7 @@
 
 use smallvec::SmallVec;
 
-use super::{Instance, World};
+use super::instance::Instance;
 use crate::math::{Ray, Rgb};
 use crate::volume::CoefficientBounds;
 use crate::volume::cells::CellWalk;
@@ -39,7 +39,7 @@ impl VolumeEntry {
 /// The medium along one ray, walked from its origin outwards.
 #[derive(Clone, Debug)]
 pub struct MediumRay<'w> {
-    world: &'w World,
+    instances: &'w [Instance],
     ray: Ray,
     /// Volumes not reached yet, nearest last.
     ahead: Entries,
@@ -53,11 +53,11 @@ pub struct MediumRay<'w> {
 }
 
 impl<'w> MediumRay<'w> {
-    pub(super) fn new(world: &'w World, ray: Ray, mut ahead: Entries) -> Self {
+    pub(super) fn new(instances: &'w [Instance], ray: Ray, mut ahead: Entries) -> Self {
         if ahead.len() > 1 {
             ahead.sort_by(|a, b| b.t0.total_cmp(&a.t0));
         }
-        Self { world, ray, ahead, inside: SmallVec::new(), from: 0.0, t: 0.0 }
+        Self { instances, ray, ahead, inside: SmallVec::new(), from: 0.0, t: 0.0 }
     }
 
     /// Where the first volume begins and the last one ends, before the walk has begun; `None` where
@@ -93,7 +93,7 @@ impl<'w> MediumRay<'w> {
             while let Some(next) = self.ahead.last()
                 && next.t0 <= t
             {
-                let instance = &self.world.instances[next.instance as usize];
+                let instance = &self.instances[next.instance as usize];
                 self.inside.push(Cursor::enter(instance, &self.ray, next.t0, next.t1));
                 self.ahead.pop();
             }
@@ -236,7 +236,7 @@ struct Cursor<'w> {
     way: Crossing,
 }
 
-/// What a volume is crossed by.
+/// The way in which a ray crosses a volume.
 #[derive(Clone, Copy, Debug)]
 enum Crossing {
     /// At once, up to the end of a uniform volume.

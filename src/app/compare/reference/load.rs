@@ -73,9 +73,9 @@ impl LoadedReference {
     pub fn doubt(&self, settings: &Settings) -> Option<&'static str> {
         match &self.shows {
             Shows::Unknown => None,
-            Shows::Camera(camera) if *camera != settings.camera => Some("it has another camera"),
+            Shows::Camera(camera) if *camera != settings.camera => Some("its camera differs"),
             Shows::Camera(_) => None,
-            Shows::Scene(then) if then.camera != settings.camera => Some("it has another camera"),
+            Shows::Scene(then) if then.camera != settings.camera => Some("its camera differs"),
             Shows::Scene(then) => {
                 let same = then.path == settings.path
                     && then.environment == settings.environment
@@ -120,7 +120,7 @@ impl Loading {
             Ok(result) => Some(result),
             Err(mpsc::TryRecvError::Empty) => None,
             Err(mpsc::TryRecvError::Disconnected) => {
-                let reason = "it could not be taken in; try again, or another one";
+                let reason = "it could not be loaded; try again, or another file";
                 Some(Err(Error::invalid("the reference", "", reason)))
             }
         }

@@ -57,13 +57,13 @@ fn probe_placer() -> (ProbePlacer, Arc<Gate>) {
     let session = Arc::new(Session::new(Some(2), || ()).unwrap());
     let gate = Arc::new(Gate::default());
     let at = gate.clone();
-    let probe_placer = ProbePlacer::with(session, move |scene, stop| {
-        while !at.open.load(Ordering::Relaxed) && !stop() {
+    let probe_placer = ProbePlacer::with(session, move |scene, progress| {
+        while !at.open.load(Ordering::Relaxed) && progress(0.0) {
             std::thread::sleep(Duration::from_millis(1));
         }
-        let probes = Probes::unless(scene, stop)?;
+        let probes = prepare::probes(scene, progress)?;
         at.passed.fetch_add(1, Ordering::Relaxed);
-        Some(probes)
+        Ok(probes)
     });
     (probe_placer.unwrap(), gate)
 }
@@ -86,7 +86,9 @@ fn wait(probe_placer: &ProbePlacer, will_do: impl Fn(&Picture) -> bool) -> Arc<P
 /// The film of a headless render, which starts with its probes.
 fn headless(built: &BuiltScene) -> Film {
     let job = RenderJob {
-        sampler: Arc::new(Frame::new(built.scene.clone(), SIZE, built.settings.film.seed)),
+        sampler: Arc::new(
+            Frame::new(built.scene.clone(), SIZE, built.settings.film.seed, NO_PROGRESS).unwrap(),
+        ),
         size: SIZE,
         limits: Limits { spp: SPP, seconds: None },
         resume: None,
@@ -185,7 +187,9 @@ fn edits_while_probes_are_placed() {
 fn the_recipe_tells_all_that_decides_the_probes() {
     let glowing = SMOKE.replace("albedo = 0.9", "albedo = 0.5\nemission.mode = 'source'");
     let mut scenes = Scenes::new(&glowing.replace("= 'source'", "= 'source'\nemission.le = 1.0"));
-    let probes = |scenes: &Scenes| format!("{:?}", Probes::new(&scenes.build().scene));
+    let probes = |scenes: &Scenes| {
+        format!("{:?}", prepare::probes(&scenes.build().scene, NO_PROGRESS).unwrap())
+    };
     let first = probes(&scenes);
     let strategy = &mut scenes.settings.strategy;
     strategy.emission_decoupling ^= true;

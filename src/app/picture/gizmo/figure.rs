@@ -54,10 +54,10 @@ impl Handle {
     /// The effect of dragging it.
     pub fn help(self) -> &'static str {
         match self {
-            Self::Center => "Drag to move the light in the plane of the picture.",
+            Self::Center => "Drag to move the light parallel to the picture.",
             Self::Axis(_) => "Drag to move the light along this axis.",
             Self::Target => "Drag to aim the light.",
-            Self::Direction => "Drag to turn the sun around the shot.",
+            Self::Direction => "Drag to turn the sun around the scene.",
         }
     }
 

@@ -39,7 +39,7 @@ fn ranking(error: f64) -> Ranking {
     let trials = plan(&Strategy::default(), &idle);
     let cost = |strategy: &Strategy| {
         let counts = |toggle: &Toggle| toggle.is_on(strategy) && idle(*toggle, strategy).is_none();
-        Toggle::ALL.into_iter().filter(counts).fold(7.0, |cost, toggle| cost / gain(toggle))
+        Toggle::all().filter(counts).fold(7.0, |cost, toggle| cost / gain(toggle))
     };
     let figures = |trial: &Trial| {
         (trial.source == TrialSource::Rendered).then(|| side(cost(&trial.strategy), error))
@@ -125,13 +125,13 @@ fn what_cannot_be_told_apart_is_said_to_be() {
     let (kind, headline, remarks) = of(0.1);
     assert_eq!(kind, TrialKind::Full);
     assert!(headline.starts_with("Leave on full: about 1/25"), "{headline}");
-    let expected = "As good within what is known: full without majorant boost and full without \
+    let expected = "No measurable difference: full without majorant boost and full without \
                     fire as a light";
     assert_eq!(remarks[0], expected);
 
     let (kind, _, remarks) = of(0.5);
     assert_eq!(kind, TrialKind::Without(Toggle::MajorantBoost));
-    assert!(remarks[0].starts_with("Too early to tell from it: full"), "{remarks:?}");
+    assert!(remarks[0].starts_with("Too early to tell the difference: full"), "{remarks:?}");
 }
 
 #[test]
@@ -165,7 +165,7 @@ fn no_noise_is_less_than_any() {
     sides[1] = Some(SideFigures { variance_of_mean: Some(0.0), ..side(1.0, 0.0) });
     let ranking = Ranking::new(&trials, &sides);
     assert_eq!(ranking.best().unwrap().trial.kind, TrialKind::Full);
-    assert_eq!(headline(&ranking), "Leave on full: no noise");
+    assert_eq!(headline(&ranking), "Leave on full: it has no noise");
 }
 
 #[test]
@@ -173,7 +173,7 @@ fn where_nothing_helps_it_says_so() {
     let trials = plan(&Strategy::default(), &idle);
     let equal = vec![Some(side(1.0, 0.01)); trials.len()];
     let text = headline(&Ranking::new(&trials, &equal));
-    assert_eq!(text, "No strategy is faster than baseline within what is known");
+    assert_eq!(text, "No strategy is measurably faster than baseline");
     let remarks = remarks(&Ranking::new(&trials, &equal));
     assert!(remarks.iter().any(|remark| remark.starts_with("Alone, no toggle is faster")));
     assert!(remarks.iter().any(|remark| remark.starts_with("Full takes no longer")));

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::{Affine3A, DVec3, UVec2, Vec3A};
 
 use super::*;
+use crate::error::NO_PROGRESS;
 use crate::math::{Aabb, Ray};
 use crate::volume::emission::Emission;
 use crate::volume::field::{RgbField, ScalarField};
@@ -31,7 +32,8 @@ fn medium(density_scale: Rgb, emission: Emission) -> Instance {
     let properties =
         MediumProperties { density: noise(5), density_scale, albedo, g: 0.0, emission };
     let bounds = Aabb::centered(Vec3A::ONE);
-    let volume = Volume::varying(bounds, properties, Vec3A::splat(0.45), None);
+    let volume =
+        Volume::varying(bounds, properties, Vec3A::splat(0.45), None, NO_PROGRESS).unwrap();
     Instance::new(Arc::new(volume), Affine3A::IDENTITY)
 }
 

@@ -1,4 +1,4 @@
-//! One volume in its own space: where it is, what it holds and how large that gets.
+//! A volume in its own space: its region, its medium and the bounds of that.
 
 use glam::{IVec3, Vec3A};
 
@@ -8,55 +8,12 @@ use super::{
     field::{RgbField, ScalarField},
     majorant::{Majorant, MajorantGrid},
     medium::Coefficients,
+    region::Region,
 };
-use crate::math::{Aabb, Ray, Rgb, luminance};
+use crate::error::{Progress, Result, report};
+use crate::math::{Aabb, Rgb, luminance};
 
-/// Where a volume is, in its own space. Its borders are sharp.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Region {
-    /// A box.
-    Box(Aabb),
-    /// A sphere about the origin.
-    Sphere {
-        /// Its radius.
-        radius: f32,
-    },
-    /// All of space.
-    Everywhere,
-}
-
-impl Region {
-    /// The smallest box around it; infinite for [`Region::Everywhere`].
-    pub fn bounds(&self) -> Aabb {
-        match self {
-            Self::Box(bounds) => *bounds,
-            Self::Sphere { radius } => Aabb::centered(Vec3A::splat(*radius)),
-            Self::Everywhere => Aabb::centered(Vec3A::INFINITY),
-        }
-    }
-
-    /// The part of (0, t_max) that `ray` spends inside; its direction need not be a unit vector.
-    pub fn intersect(&self, ray: &Ray, t_max: f32) -> Option<(f32, f32)> {
-        match self {
-            Self::Box(bounds) => bounds.intersect(ray, 0.0, t_max),
-            Self::Sphere { radius } => {
-                let a = ray.direction.length_squared();
-                let middle = -ray.origin.dot(ray.direction) / a;
-                let nearest = ray.at(middle);
-                let half_squared = (radius * radius - nearest.length_squared()) / a;
-                if half_squared <= 0.0 || half_squared.is_nan() {
-                    return None;
-                }
-                let half = half_squared.sqrt();
-                let (t0, t1) = ((middle - half).max(0.0), (middle + half).min(t_max));
-                (t0 < t1).then_some((t0, t1))
-            }
-            Self::Everywhere => (t_max > 0.0).then_some((0.0, t_max)),
-        }
-    }
-}
-
-/// What a volume is made of. Coefficients are per unit of *world* length, whatever its placement.
+/// The properties of a medium. Coefficients are per unit of *world* length, whatever its placement.
 #[derive(Clone, Debug)]
 pub struct MediumProperties {
     /// The density field; μ_t = `density_scale` · value.
@@ -67,7 +24,7 @@ pub struct MediumProperties {
     pub albedo: RgbField,
     /// Mean cosine of its Henyey–Greenstein phase function.
     pub g: f32,
-    /// What it radiates.
+    /// The emission.
     pub emission: Emission,
 }
 
@@ -141,7 +98,7 @@ impl MediumProperties {
     }
 }
 
-/// One volume in its own space, ready to be placed any number of times.
+/// A volume in its own space, ready to be placed any number of times.
 #[derive(Clone, Debug)]
 pub struct Volume {
     region: Region,
@@ -181,30 +138,44 @@ impl Volume {
 
     /// A volume whose coefficients vary inside a box, bounded over cells of about `cell_size`.
     /// `voxel` is the edge of the smallest stored voxel in the volume's space, if any is stored.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`](crate::error::Error::Cancelled) where `progress` says so.
     pub fn varying(
         bounds: Aabb,
         properties: MediumProperties,
         cell_size: Vec3A,
         voxel: Option<f32>,
-    ) -> Self {
-        let cells = MajorantGrid::build(bounds, cell_size, |cell| properties.bounds_over(cell));
-        let chords = probe_chords(&cells, &properties);
-        let energy = Energy::varying(&cells, |local| luminance(properties.at(local).emission));
+        progress: Progress,
+    ) -> Result<Self> {
+        let part = |index: usize| move |fraction: f32| progress((index as f32 + fraction) / 3.0);
+        let bounds_over = |cell: &Aabb| properties.bounds_over(cell);
+        let cells = MajorantGrid::build(bounds, cell_size, bounds_over, &part(0))?;
+        let chords = probe_chords(&cells, &properties, &part(1))?;
+        let emission = |local: Vec3A| luminance(properties.at(local).emission);
+        let energy = Energy::varying(&cells, emission, &part(2))?;
         let region = Region::Box(bounds);
-        Self { region, properties, bounds: CoefficientBounds::Cells(cells), voxel, chords, energy }
+        Ok(Self {
+            region,
+            properties,
+            bounds: CoefficientBounds::Cells(cells),
+            voxel,
+            chords,
+            energy,
+        })
     }
 
-    /// Where it is.
+    /// The region that it takes.
     pub fn region(&self) -> &Region {
         &self.region
     }
 
-    /// What it is made of.
+    /// Its medium.
     pub fn properties(&self) -> &MediumProperties {
         &self.properties
     }
 
-    /// How large its coefficients get.
+    /// The bounds of its coefficients.
     pub fn bounds(&self) -> &CoefficientBounds {
         &self.bounds
     }
@@ -228,16 +199,23 @@ impl Volume {
 /// Sums the emission at the cells' centers along every row of cells of each axis, and keeps the
 /// largest sum. It only sets the unit of the boost amount, so a coarse sum will do; but sparks
 /// between the centers count too, half a cell long, lest that unit be next to nothing.
-fn probe_chords(cells: &MajorantGrid, properties: &MediumProperties) -> Vec3A {
+fn probe_chords(
+    cells: &MajorantGrid,
+    properties: &MediumProperties,
+    progress: Progress,
+) -> Result<Vec3A> {
     if !properties.emission.is_some() {
-        return Vec3A::ZERO;
+        return Ok(Vec3A::ZERO);
     }
     let mut brightest = 0.0_f32;
     let mut rows = std::collections::BTreeMap::<(usize, i32, i32), f32>::new();
-    cells.for_each_cell(|cell, region, majorant| {
+    for (index, majorant) in cells.cells().iter().enumerate() {
         if majorant.emission <= 0.0 {
-            return;
+            continue;
         }
+        report(progress, index as f32 / cells.cells().len() as f32)?;
+        let cell = cells.grid().cell(index);
+        let region = cells.grid().whole(cell);
         let emission = luminance(properties.at(region.center()).emission);
         brightest = brightest.max(majorant.emission);
         for axis in 0..3 {
@@ -245,9 +223,10 @@ fn probe_chords(cells: &MajorantGrid, properties: &MediumProperties) -> Vec3A {
             let key = (axis, row[(axis + 1) % 3], row[(axis + 2) % 3]);
             *rows.entry(key).or_default() += emission * cells.cell_size()[axis];
         }
-    });
-    rows.iter().fold(0.5 * brightest * cells.cell_size(), |mut chords, (&(axis, ..), &sum)| {
+    }
+    let least = 0.5 * brightest * cells.cell_size();
+    Ok(rows.iter().fold(least, |mut chords, (&(axis, ..), &sum)| {
         chords[axis] = chords[axis].max(sum);
         chords
-    })
+    }))
 }

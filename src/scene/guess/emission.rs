@@ -1,18 +1,18 @@
-//! How what glows is rendered: the emission model of a bare volume, and how bright it is.
+//! The emission of a bare volume: its mode, and how bright it is.
 
 use glam::Vec3A;
 
-use super::FAIRLY;
-use super::probe::{columns, quantile, two_digits};
+use super::note::{About, Note};
+use super::probe::{FAIRLY, columns, quantile};
 use super::roles::Candidate;
-use super::{About, Note};
+use crate::format::two_digits;
 use crate::math::{Aabb, luminance};
-use crate::scene::conventions::kelvin_scale;
+use crate::scene::grid_names::kelvin_scale;
 use crate::scene::role::{Role, flame_stops};
 use crate::scene::settings::{EmissionMode, EmissionSettings, Normalize};
 use crate::volume::blackbody;
 
-/// The emission of the grid that glows, so bright that a fairly bright line along `axis` shows the
+/// The settings of the emission of a grid, so bright that a fairly bright line along `axis` shows the
 /// radiance that is wanted.
 pub(super) fn emission_settings(
     candidate: &Candidate,
@@ -30,19 +30,19 @@ pub(super) fn emission_settings(
             emission.normalize = Some(Normalize::T4);
             let scale = kelvin_scale(candidate.max);
             emission.kelvin_scale = Some(scale);
-            format!("a temperature, {scale} kelvin a unit")
+            format!("a temperature (temperature × {scale} K)")
         }
         Role::Flame => {
             emission.mode = EmissionMode::Ramp;
             emission.stops = Some(flame_stops(candidate.max));
-            "flame, through a ramp of colors".to_owned()
+            "the flame, through a color ramp".to_owned()
         }
         Role::Emission | Role::Density => {
             emission.mode = EmissionMode::Grid;
-            "the emission itself".to_owned()
+            "the emission".to_owned()
         }
     };
-    notes.push(Note::new(About::Glow, format!("\"{name}\" is {what}")));
+    notes.push(Note::new(About::Emission, format!("\"{name}\" is {what}")));
     let brightness = brightness_of(&emission);
     let sums = columns(&candidate.grid, bounds, axis, brightness);
     let scale = quantile(&sums, FAIRLY).map_or(1.0, |sum| two_digits(wanted_radiance / sum));

@@ -1,0 +1,26 @@
+//! The tables that can be asked for.
+
+/// A table of the benchmark: a kind of comparison.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Table {
+    /// Toggle upon toggle.
+    Toggles,
+    /// Modes of the majorant boost by their amounts.
+    Modes,
+    /// Where rays scatter: by null-collision sampling, by probes, by both.
+    Distances,
+    /// Estimators of transmittance, and trackers.
+    Walks,
+}
+
+impl Table {
+    /// The table that a word of the command line asks for.
+    pub fn named(word: &str) -> Option<Self> {
+        match word {
+            "modes" => Some(Self::Modes),
+            "distances" => Some(Self::Distances),
+            "walks" => Some(Self::Walks),
+            _ => None,
+        }
+    }
+}

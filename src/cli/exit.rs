@@ -1,0 +1,37 @@
+//! How a command ends: its exit code, and the error that kept it from its work.
+
+use crate::error::Error;
+
+/// The exit code of a command.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Exit {
+    Done = 0,
+    Failed = 1,
+    WrongUsage = 2,
+    Interrupted = 130,
+}
+
+/// An error that kept a command from its work, with the exit code that it leads to.
+pub struct Refusal {
+    /// The reason.
+    pub error: Error,
+    /// The exit code that goes with it.
+    pub exit: Exit,
+}
+
+impl From<Error> for Refusal {
+    fn from(error: Error) -> Self {
+        let exit = match error {
+            Error::Cancelled => Exit::Interrupted,
+            _ => Exit::Failed,
+        };
+        Self { error, exit }
+    }
+}
+
+impl Refusal {
+    /// A request that makes no sense, whatever the files hold.
+    pub fn usage(error: Error) -> Self {
+        Self { error, exit: Exit::WrongUsage }
+    }
+}

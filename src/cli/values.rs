@@ -1,0 +1,51 @@
+//! Values of the command line: how they are read, and how a shell takes them.
+
+use glam::UVec2;
+
+/// A number of seconds above 0.
+pub fn parse_seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(seconds) if seconds > 0.0 && seconds.is_finite() => Ok(seconds),
+        _ => Err("expected a number of seconds above 0".to_owned()),
+    }
+}
+
+/// A width and a height in pixels, such as 960x540.
+pub fn parse_size(text: &str) -> Result<UVec2, String> {
+    let sides =
+        text.split_once(['x', 'X']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+    match sides {
+        Some((width, height)) if (1..=16384).contains(&width) && (1..=16384).contains(&height) => {
+            Ok(UVec2::new(width, height))
+        }
+        _ => Err("expected WIDTHxHEIGHT with sides of 1 to 16384, such as 960x540".to_owned()),
+    }
+}
+
+/// A word as a shell takes it literally.
+pub fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "-_./:,=+@%".contains(c);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        return word.to_owned();
+    }
+    format!("'{}'", word.replace('\'', r"'\''"))
+}
+
+/// A pixel, column and row from 0, such as 480,270.
+pub fn parse_pixel(text: &str) -> Result<UVec2, String> {
+    let sides = text.split_once(',').and_then(|(x, y)| Some((x.parse().ok()?, y.parse().ok()?)));
+    sides.map(|(x, y)| UVec2::new(x, y)).ok_or_else(|| "expected X,Y such as 480,270".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_are_two_numbers() {
+        assert_eq!(parse_size("960x540"), Ok(UVec2::new(960, 540)));
+        for wrong in ["960", "0x5", "5x0", "ax5", "5x5x5", "-5x5", "99999x5", ""] {
+            assert!(parse_size(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! The kinds of lights: how each is sampled, and how the hierarchy sees it.
+
+use glam::{Vec2, Vec3A};
+
+use super::emitter::Emitter;
+use super::local::{Point, Spot};
+use super::sample::LightSample;
+use super::sun::Sun;
+use crate::math::{PathRng, Rgb, Slot, luminance};
+use crate::surface::Shape;
+use crate::volume::world::World;
+
+/// A light that can be sampled.
+#[derive(Clone, Debug)]
+pub enum Light {
+    /// Parallel light.
+    Sun(Sun),
+    /// All directions from a point.
+    Point(Point),
+    /// A cone from a point.
+    Spot(Spot),
+    /// The emitting surface of this index among the scene's surfaces.
+    Surface {
+        /// Index among the scene's surfaces.
+        index: usize,
+        /// A copy of its shape.
+        shape: Shape,
+        /// Its radiance.
+        radiance: Rgb,
+    },
+    /// The emissive volume of this index among the world's instances.
+    Volume(u32),
+    /// An emitting shape that no ray meets: it neither shows nor hides anything.
+    Invisible {
+        /// Its shape.
+        shape: Shape,
+        /// Its radiance.
+        radiance: Rgb,
+    },
+}
+
+impl Light {
+    /// Draws a direction from `from` towards it, its density without the choice of the light;
+    /// `None` for volumes, whose light comes from all along the line of sight.
+    pub fn sample(&self, from: Vec3A, rng: &mut PathRng) -> Option<LightSample> {
+        let mut u = || Vec2::new(rng.at(Slot::LightX), rng.at(Slot::LightY));
+        match self {
+            Self::Sun(sun) => Some(sun.sample(u())),
+            Self::Point(point) => point.sample(from),
+            Self::Spot(spot) => spot.sample(from),
+            Self::Surface { shape, radiance, .. } | Self::Invisible { shape, radiance } => {
+                let u = u();
+                let point = shape.sample(from, rng.at(Slot::LightCell), u)?;
+                Some(LightSample {
+                    direction: point.direction,
+                    distance: point.distance,
+                    radiance: *radiance,
+                    pdf: point.pdf_solid_angle,
+                    can_be_met: matches!(self, Self::Surface { .. }),
+                })
+            }
+            Self::Volume(_) => None,
+        }
+    }
+
+    /// How the hierarchy sees it; `None` for a sun, which is nowhere.
+    pub(super) fn emitter(&self, world: &World) -> Option<Emitter> {
+        match self {
+            Self::Sun(_) => None,
+            Self::Point(point) => Some(point.emitter()),
+            Self::Spot(spot) => Some(spot.emitter()),
+            Self::Surface { shape, radiance, .. } | Self::Invisible { shape, radiance } => {
+                // A quarter of its area is the mean of what a convex shape shows.
+                let intensity = luminance(*radiance) * 0.25 * shape.area()?;
+                Some(Emitter { bounds: shape.bounds()?, intensity, cone: None })
+            }
+            Self::Volume(instance) => {
+                let instance = world.instances().get(*instance as usize)?;
+                let intensity = instance.emitted_power();
+                Some(Emitter { bounds: instance.emission_bounds(), intensity, cone: None })
+            }
+        }
+    }
+}

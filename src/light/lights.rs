@@ -1,0 +1,150 @@
+//! All lights of a scene: the choice among them, and densities of what is met without choosing.
+
+use glam::Vec3A;
+
+use super::choice::{By, ChosenLight, LightChoice};
+use super::emitter::{Emitter, Receiver};
+use super::kinds::Light;
+use super::scores::Scores;
+use super::selector::Selector;
+use super::sun::Sun;
+use crate::math::Rgb;
+use crate::surface::{Hit, Surface};
+use crate::volume::world::World;
+
+/// All lights of a scene.
+#[derive(Clone, Debug, Default)]
+pub struct Lights {
+    /// Radiance from everywhere, met by chance only.
+    pub environment: Rgb,
+    lights: Vec<Light>,
+    light_of_surface: Vec<Option<u32>>,
+    light_of_instance: Vec<Option<u32>>,
+    all: Selector,
+    without_volumes: Selector,
+}
+
+impl Lights {
+    /// Gathers the lights; every emitting surface of finite area and every emissive volume that
+    /// ends somewhere becomes one.
+    pub fn new(
+        environment: Rgb,
+        mut lights: Vec<Light>,
+        surfaces: &[Surface],
+        world: &World,
+    ) -> Self {
+        let mut light_of_surface = vec![None; surfaces.len()];
+        for (index, surface) in surfaces.iter().enumerate() {
+            if surface.emits() && surface.shape.area().is_some() {
+                light_of_surface[index] = Some(lights.len() as u32);
+                let (shape, radiance) = (surface.shape.clone(), surface.emission);
+                lights.push(Light::Surface { index, shape, radiance });
+            }
+        }
+        let without_volumes = Selector::new(&lights, world);
+        let mut light_of_instance = vec![None; world.instances().len()];
+        for &instance in world.emissive() {
+            light_of_instance[instance as usize] = Some(lights.len() as u32);
+            lights.push(Light::Volume(instance));
+        }
+        let all = Selector::new(&lights, world);
+        Self { environment, lights, light_of_surface, light_of_instance, all, without_volumes }
+    }
+
+    /// The light that `pick`, in [0, 1), chooses for a receiver; `None` where no light can bring
+    /// anything.
+    pub fn choose(
+        &self,
+        to: &Receiver,
+        choice: &LightChoice,
+        pick: f64,
+    ) -> Option<ChosenLight<'_>> {
+        let (index, probability) = self.selector(choice.volumes).choose(to, &choice.by, pick)?;
+        Some(ChosenLight { index, light: self.lights.get(index as usize)?, probability })
+    }
+
+    /// Probability with which [`Lights::choose`] draws a light, by its index in the scene.
+    pub fn probability(&self, light: u32, to: &Receiver, choice: &LightChoice) -> f32 {
+        self.selector(choice.volumes).probability(light, to, &choice.by)
+    }
+
+    /// Number of lights to choose from, with or without emissive volumes.
+    pub fn len(&self, volumes: bool) -> usize {
+        self.selector(volumes).len()
+    }
+
+    /// Rough irradiance of a light at the receiver, if nothing is in the way.
+    pub fn irradiance(&self, light: u32, to: &Receiver) -> f32 {
+        self.all.guess(light, to).map_or(0.0, |guess| guess.0)
+    }
+
+    /// The choice by `scores` at a receiver that passes on light from a unit direction by a
+    /// `value`; a rough one will do.
+    pub fn choice_by(
+        &self,
+        scores: &Scores,
+        to: &Receiver,
+        volumes: bool,
+        value: impl Fn(Vec3A) -> f32,
+    ) -> LightChoice {
+        let selector = self.selector(volumes);
+        let shares = scores.at(|light| {
+            let guess = selector.guess(light, to);
+            guess.map_or(0.0, |(irradiance, direction)| irradiance * value(direction))
+        });
+        LightChoice { volumes, by: By::Shares(shares) }
+    }
+
+    /// Density over solid angle with which, from a receiver, the direction is drawn that ended at
+    /// `hit` on the surface `index`, the choice of the light included; 0 where it cannot be.
+    pub fn pdf_of_surface(
+        &self,
+        index: usize,
+        to: &Receiver,
+        choice: &LightChoice,
+        hit: &Hit,
+    ) -> f32 {
+        let Some(Some(light)) = self.light_of_surface.get(index) else { return 0.0 };
+        match &self.lights[*light as usize] {
+            Light::Surface { shape, .. } => {
+                self.probability(*light, to, choice) * shape.pdf_solid_angle(to.position, hit)
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// Probability with which the emissive volume `instance` is chosen from a receiver.
+    pub fn probability_of_volume(&self, instance: u32, to: &Receiver, choice: &LightChoice) -> f32 {
+        match self.light_of_instance.get(instance as usize) {
+            Some(Some(light)) => self.selector(choice.volumes).probability(*light, to, &choice.by),
+            _ => 0.0,
+        }
+    }
+
+    /// Radiance of every sun's disk seen along the unit `direction`, each with the density of
+    /// looking there from a receiver by a choice.
+    pub fn suns_behind(
+        &self,
+        from: Option<(&Receiver, &LightChoice)>,
+        direction: Vec3A,
+    ) -> impl Iterator<Item = (&Sun, f32)> {
+        self.all.suns().filter_map(move |index| match &self.lights[index as usize] {
+            Light::Sun(sun) if sun.shows_along(direction) => {
+                let pdf = from.map_or(0.0, |(to, choice)| {
+                    self.probability(index, to, choice) * sun.pdf_solid_angle()
+                });
+                Some((sun, pdf))
+            }
+            _ => None,
+        })
+    }
+
+    /// All lights that are somewhere.
+    pub fn emitters(&self, world: &World) -> Vec<Emitter> {
+        self.lights.iter().filter_map(|light| light.emitter(world)).collect()
+    }
+
+    fn selector(&self, volumes: bool) -> &Selector {
+        if volumes { &self.all } else { &self.without_volumes }
+    }
+}

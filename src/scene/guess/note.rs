@@ -1,0 +1,36 @@
+//! Guesses in words.
+
+/// The subject of a guess.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum About {
+    /// The axis of the file that points up.
+    UpAxis,
+    /// The grid that is the density, and how thick it is.
+    Density,
+    /// The grid that emits, and how.
+    Emission,
+    /// The light on a volume that emits none.
+    Light,
+}
+
+/// A guess in words.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Note {
+    /// Its subject.
+    pub about: About,
+    /// The guess itself.
+    pub text: String,
+}
+
+impl Note {
+    /// A guess about something.
+    pub(super) fn new(about: About, text: impl Into<String>) -> Self {
+        Self { about, text: text.into() }
+    }
+}
+
+impl std::fmt::Display for Note {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "guessed: {}", self.text)
+    }
+}

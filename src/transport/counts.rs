@@ -1,0 +1,152 @@
+//! How often: the one place that decides the expected number of samples of each technique. It is
+//! asked at a vertex, before any direction is drawn.
+//!
+//! | technique | rule |
+//! |---|---|
+//! | guided flights of a camera ray | in proportion to the light scattered into it, times what pays |
+//! | light samples (next-event estimation) | one |
+//! | going on, near the camera inside of a medium | the weight window |
+//! | going on, elsewhere | Russian roulette on the throughput |
+//!
+//! Unbiased whatever the numbers: splitting and roulette make up for them by their factors, guided
+//! flights by their number in the balance heuristic.
+
+use super::context::PathContext;
+use super::probes::{Brightness, DistancePdf};
+use super::strategy::{Distance, ScatterProbability, Strategy};
+use super::vertex::Vertex;
+use super::weight_window::{MOST_NESTED, Splitting};
+use crate::math::{PathRng, Rgb, mean};
+use crate::sampling::mis;
+
+/// Scattering events and reflections before roulette may end a path.
+const ROULETTE_AFTER: u32 = 3;
+/// Throughput below which it does. Paths that may yet come to light are not worth less for being
+/// dim: at 1 the noise of dense smoke costs a third more time, that of lights inside of it several
+/// times as much.
+const ROULETTE_BELOW: f32 = 0.1;
+/// Vertices up to which the weight window is asked: the spread that guides bring is behind by then,
+/// and to look up a probe at each of a thousand vertices costs more than the walk.
+const WEIGHED_VERTICES: u32 = 8;
+/// Most guided flights of a ray from the camera, on average.
+const MOST_FLIGHTS: f32 = 16.0;
+/// Relative variance of what an unguided flight finds from which on guided ones pay.
+const MUCH_MISSED: f32 = 1.0;
+
+/// What a path has come to where it is asked how often it goes on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Standing {
+    /// The throughput that arrives at the vertex.
+    pub(super) throughput: Rgb,
+    /// Scattering events and reflections before the vertex.
+    pub(super) scatters: u32,
+    /// Contribution that a flight of the camera ray is expected to make; 0 where that is not known.
+    pub(super) expected: f32,
+    /// Splits whose branches are being followed.
+    pub(super) nested: u32,
+}
+
+/// The number of samples of each technique at one vertex.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Counts {
+    /// Samples of lights.
+    pub(super) light_samples: u32,
+    /// The path's value relative to `expected` and its brightness relative to one worth keeping,
+    /// where the weight window decides.
+    window: Option<[f32; 2]>,
+    may_split: bool,
+    /// Whether the weight window decides for the path beyond the vertex as well.
+    survives_roulette: bool,
+    scatters: u32,
+}
+
+impl Counts {
+    /// The counts at `vertex`, which a path reaches along the unit `forward`.
+    pub(super) fn at(
+        context: &PathContext,
+        strategy: &Strategy,
+        vertex: &Vertex,
+        forward: glam::Vec3A,
+        path: Standing,
+    ) -> Self {
+        let is_known = path.expected > 0.0 && !vertex.is_surface();
+        let weighs = is_known && path.scatters < WEIGHED_VERTICES;
+        let probes = context.guides(strategy).filter(|_| weighs);
+        let window = probes.map(|probes| {
+            let radiance = probes.radiance_at(vertex.receiver().position, forward);
+            let value = mean(path.throughput) * radiance / path.expected;
+            [value, path.throughput.max_element() / ROULETTE_BELOW]
+        });
+        Self {
+            light_samples: 1,
+            window,
+            may_split: path.nested < MOST_NESTED,
+            survives_roulette: is_known && path.scatters + 1 < WEIGHED_VERTICES,
+            scatters: path.scatters + 1,
+        }
+    }
+
+    /// Draws how many paths go on from the vertex.
+    pub(super) fn splitting(&self, rng: &mut PathRng) -> Splitting {
+        match self.window {
+            Some([value, brightness]) => Splitting::draw(value, brightness, self.may_split, rng),
+            None => Splitting { count: 1, factor: 1.0 },
+        }
+    }
+
+    /// Probability, up to 1, that a path goes on along the direction it has drawn: Russian roulette
+    /// on its throughput, with `guiding_ratio` times as many paths where guides sent them, except
+    /// where the weight window has spoken.
+    pub(super) fn survival(&self, throughput: Rgb, guiding_ratio: f32) -> f32 {
+        if self.survives_roulette {
+            return f32::from(u8::from(throughput != Rgb::ZERO));
+        }
+        let survival = (throughput.max_element() * guiding_ratio / ROULETTE_BELOW).min(1.0);
+        if self.scatters < ROULETTE_AFTER {
+            return f32::from(u8::from(survival > 0.0));
+        }
+        survival
+    }
+}
+
+/// How the flights of a camera ray share what both kinds can bring, scattering.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Allocation {
+    /// Guided flights on average.
+    pub(super) flights: f32,
+    /// Whether they bring all of it; else both kinds do, by MIS.
+    pub(super) alone: bool,
+}
+
+impl Allocation {
+    /// How many guided flights pay, where the guides are those of `distance_pdf`. The noise of a pixel is
+    /// about in proportion to its light, so that the picture's falls fastest for the same effort
+    /// where each gets flights in that proportion; fewer where an unguided one finds all the light
+    /// as well, as in a cloud, or where the noise is that of surfaces. But each ray gets one at least,
+    /// or its share of one, as it does from probes alone: what is rarely guided has rare bright paths.
+    pub(super) fn new(
+        strategy: &Strategy,
+        distance_pdf: Option<&DistancePdf>,
+        film: &Brightness,
+    ) -> Self {
+        let alone = strategy.advanced.distance == Distance::Probes;
+        let Some(distance_pdf) = distance_pdf else { return Self { flights: 1.0, alone } };
+        let least = if alone { 1.0 } else { film.share };
+        let relative = film.share * (distance_pdf.light() / film.scattered);
+        let wanted = relative * (distance_pdf.missed() / MUCH_MISSED).min(1.0);
+        let flights = match strategy.advanced.scatter_probability {
+            ScatterProbability::Light if wanted.is_finite() => wanted.clamp(least, MOST_FLIGHTS),
+            _ => least,
+        };
+        Self { flights, alone }
+    }
+
+    /// The factor of a scattering event of either kind, whose weight is over `pdf_null`.
+    pub(super) fn weight(&self, pdf_null: f32, pdf_guided: f32, is_null: bool) -> f32 {
+        match self.alone {
+            false => mis::mixture([1.0, self.flights], [pdf_null, pdf_guided]),
+            true if is_null || pdf_guided <= 0.0 => 0.0,
+            true => pdf_null / (pdf_guided * self.flights),
+        }
+    }
+}

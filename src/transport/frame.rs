@@ -1,0 +1,206 @@
+//! A scene framed on a film, with everything that was prepared for it.
+
+use std::sync::Arc;
+
+use glam::{UVec2, Vec2};
+
+use super::context::PathContext;
+use super::emission::EmissionEstimator;
+use super::observer::{Nobody, Observer};
+use super::path;
+use super::prepare::{self, guided_flights};
+use super::probes::{Brightness, Probes};
+use super::sample::{PathSample, PixelSampler, Prepared, SampleNumber};
+use super::scene::Scene;
+use crate::error::{NO_PROGRESS, Progress, Result};
+use crate::math::{PathRng, Slot};
+
+/// A scene framed on a film.
+#[derive(Clone, Debug)]
+pub struct Frame {
+    pub(super) scene: Arc<Scene>,
+    size: UVec2,
+    seed: u64,
+    emission_estimator: EmissionEstimator,
+    pub(super) probes: Option<Arc<Probes>>,
+    pub(super) brightness: Brightness,
+}
+
+impl Frame {
+    /// Frames `scene` on a film of `size` pixels; `seed` chooses the random numbers of the whole
+    /// picture. Probes are placed where the strategy asks for them, and the optimal majorant is
+    /// fitted, both whatever the seed.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`](crate::error::Error::Cancelled) where `progress` says so.
+    pub fn new(scene: Arc<Scene>, size: UVec2, seed: u64, progress: Progress) -> Result<Self> {
+        let probes = prepare::probes(&scene, progress)?.map(Arc::new);
+        Self::try_with_probes(scene, size, seed, probes, progress)
+    }
+
+    /// Frames `scene` with probes that were placed for it before, or without any: they change the
+    /// noise of the picture and not its mean. Takes a few milliseconds.
+    pub fn with_probes(
+        scene: Arc<Scene>,
+        size: UVec2,
+        seed: u64,
+        probes: Option<Arc<Probes>>,
+    ) -> Self {
+        // Nothing cancels either.
+        let emission_estimator = prepare::emission_estimator(&scene, size, NO_PROGRESS)
+            .unwrap_or(EmissionEstimator::coarse());
+        let brightness = |probes: &Arc<Probes>| {
+            Brightness::new(probes, &scene, size, NO_PROGRESS).unwrap_or_default()
+        };
+        let brightness = probes.as_ref().map(brightness).unwrap_or_default();
+        Self { scene, size, seed, emission_estimator, probes, brightness }
+    }
+
+    /// [`Frame::with_probes`], unless it is given up on the way.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`](crate::error::Error::Cancelled) where `progress` says so.
+    pub fn try_with_probes(
+        scene: Arc<Scene>,
+        size: UVec2,
+        seed: u64,
+        probes: Option<Arc<Probes>>,
+        progress: Progress,
+    ) -> Result<Self> {
+        let emission_estimator = prepare::emission_estimator(&scene, size, progress)?;
+        let brightness = match &probes {
+            Some(probes) => Brightness::new(probes, &scene, size, progress)?,
+            None => Brightness::default(),
+        };
+        Ok(Self { scene, size, seed, emission_estimator, probes, brightness })
+    }
+
+    /// The same frame with another seed. What was prepared for one holds for the other.
+    pub fn with_seed(&self, seed: u64) -> Self {
+        Self { seed, ..self.clone() }
+    }
+
+    /// Pixels across and down.
+    pub fn size(&self) -> UVec2 {
+        self.size
+    }
+
+    /// Follows one path and shows each of its steps to `observer`.
+    pub fn trace(
+        &self,
+        pixel: UVec2,
+        number: SampleNumber,
+        observer: &mut impl Observer,
+    ) -> PathSample {
+        let sample = number.index();
+        let mut rng = if self.scene.strategy.advanced.low_discrepancy {
+            PathRng::stratified(self.seed, pixel, sample)
+        } else {
+            PathRng::new(self.seed, pixel, sample)
+        };
+        let offset = Vec2::new(rng.at(Slot::PixelX), rng.at(Slot::PixelY));
+        let ray = self.scene.camera.ray(self.size, pixel, offset);
+        let flights = match number {
+            SampleNumber::First if self.has_pilot() => guided_flights::FIRST,
+            SampleNumber::First => 1.0,
+            SampleNumber::Later(_, prepared) => prepared.guided_flights.unwrap_or(1.0),
+        };
+        path::trace(&self.scene, self.context(flights), ray, &mut rng, observer)
+    }
+
+    fn context(&self, flights: f32) -> PathContext<'_> {
+        PathContext {
+            emission_estimator: &self.emission_estimator,
+            probes: self.probes.as_deref(),
+            brightness: self.brightness,
+            flights,
+        }
+    }
+
+    /// The same frame once its pilot pass has run.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`](crate::error::Error::Cancelled) where `progress` says so.
+    pub fn prepared(self, progress: Progress) -> Result<PreparedFrame> {
+        let prepared = self.prepare(progress)?;
+        Ok(PreparedFrame { frame: self, prepared })
+    }
+
+    /// Whether a pilot pass finds how many guided flights pay.
+    fn has_pilot(&self) -> bool {
+        self.probes.is_some() && self.scene.strategy.learns_share()
+    }
+}
+
+impl PixelSampler for Frame {
+    fn sample(&self, pixel: UVec2, number: SampleNumber) -> PathSample {
+        self.trace(pixel, number, &mut Nobody)
+    }
+
+    fn prepare(&self, progress: Progress) -> Result<Prepared> {
+        if !self.has_pilot() {
+            return Ok(Prepared::NOTHING);
+        }
+        let context = |flights| self.context(flights);
+        let flights = guided_flights::flights(&self.scene, self.size, context, progress)?;
+        Ok(Prepared { guided_flights: Some(flights) })
+    }
+}
+
+/// A frame whose pilot pass has run, of which any sample can be taken.
+#[derive(Clone, Debug)]
+pub struct PreparedFrame {
+    frame: Frame,
+    prepared: Prepared,
+}
+
+impl PreparedFrame {
+    /// [`Frame::new`], and the pilot pass of the frame.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`](crate::error::Error::Cancelled) where `progress` says so.
+    pub fn new(scene: Arc<Scene>, size: UVec2, seed: u64, progress: Progress) -> Result<Self> {
+        Frame::new(scene, size, seed, progress)?.prepared(progress)
+    }
+
+    /// The same frame with another seed.
+    pub fn with_seed(&self, seed: u64) -> Self {
+        Self { frame: self.frame.with_seed(seed), prepared: self.prepared }
+    }
+
+    /// Pixels across and down.
+    pub fn size(&self) -> UVec2 {
+        self.frame.size
+    }
+
+    /// The frame itself.
+    pub fn frame(&self) -> &Frame {
+        &self.frame
+    }
+
+    /// Guided flights of a camera ray, relative to those that the probes propose: those that pay in
+    /// this picture, 0 where none do.
+    pub fn guided_flights(&self) -> f32 {
+        self.prepared.guided_flights.unwrap_or(1.0)
+    }
+
+    /// Sample `index` of a pixel, counted from 0.
+    pub fn sample(&self, pixel: UVec2, index: u32) -> PathSample {
+        self.trace(pixel, index, &mut Nobody)
+    }
+
+    /// Follows the path of sample `index` and shows each of its steps to `observer`.
+    pub fn trace(&self, pixel: UVec2, index: u32, observer: &mut impl Observer) -> PathSample {
+        self.frame.trace(pixel, SampleNumber::new(index, &self.prepared), observer)
+    }
+}
+
+impl PixelSampler for PreparedFrame {
+    fn sample(&self, pixel: UVec2, number: SampleNumber) -> PathSample {
+        self.frame.sample(pixel, number)
+    }
+
+    fn prepare(&self, _: Progress) -> Result<Prepared> {
+        Ok(self.prepared)
+    }
+}

@@ -1,0 +1,51 @@
+//! Where a path stands: everything that a branch saves and restores.
+
+use glam::Vec3A;
+
+use crate::math::{Ray, Rgb};
+use crate::transport::direct::PrevVertex;
+
+/// The part of a path that a branch saves and restores.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct State {
+    pub(super) ray: Ray,
+    /// β: the product of f/p so far, without any MIS weight of direct light.
+    pub(super) throughput: Rgb,
+    /// p_mixture / p_bsdf of the last direction drawn at a vertex that scatters everywhere: a path
+    /// that was sent to light is not dim for being one of many.
+    pub(super) guiding_ratio: f32,
+    /// Scattering events and reflections so far.
+    pub(super) scatters: u32,
+    /// The vertex the ray left, for MIS; `None` for the camera ray.
+    pub(super) prev_vertex: Option<PrevVertex>,
+    /// A point of a light that guides the ray.
+    pub(super) light: Option<Vec3A>,
+    pub(super) branch: Branch,
+}
+
+/// Which random numbers a path draws: a camera ray may have guided flights beside its own, and
+/// vertices may be left several times.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Branch {
+    /// The path of the unguided flight.
+    Main,
+    /// The path of the first guided flight.
+    FirstGuided,
+    /// Any other.
+    Other,
+}
+
+impl State {
+    /// The state of a camera ray.
+    pub(super) fn new(ray: Ray) -> Self {
+        Self {
+            ray,
+            throughput: Rgb::ONE,
+            guiding_ratio: 1.0,
+            scatters: 0,
+            prev_vertex: None,
+            light: None,
+            branch: Branch::Main,
+        }
+    }
+}

@@ -1,0 +1,230 @@
+//! The probes of a scene, and what can be read from them.
+
+use glam::Vec3A;
+
+use super::caustic_lobes::{CausticLobe, CausticLobes, PhotonSegment};
+use super::distance_pdf::{DistancePdf, DistancePdfBuilder, RayPiece};
+use super::octree::Octree;
+use super::probe::{Indirect, Probe};
+use crate::light::Scores;
+use crate::math::{Aabb, Ray, mean};
+use crate::volume::medium::Segment;
+use crate::volume::world::MediumRay;
+
+/// Light outside of the octree, relative to its mean radiance inside.
+pub(super) const OUTSIDE: f32 = 0.05;
+/// Share of the directions that go towards the glow around the lights if all of their light is
+/// scattered.
+const MOST_AIRLIGHT: f32 = 0.5;
+/// Transmittance below which a line asks the probes no more.
+const DARK: f32 = 1e-4;
+
+/// The probes of a scene.
+#[derive(Clone, Debug)]
+pub struct Probes {
+    pub(super) octree: Octree,
+    /// By node; those of inner nodes are what their leaves began as.
+    pub(super) probes: Vec<Probe>,
+    /// Of the lights, by node, at leaves from where any is seen; empty if they are not asked for.
+    pub(super) scores: Vec<Option<Scores>>,
+    /// Bundles of light that metals throw.
+    pub(super) caustic_lobes: CausticLobes,
+    /// Radiance scattered outside of the octree per unit of μ_s.
+    pub(super) outside: f32,
+    /// Mean cosine of what scatters most.
+    pub(super) mean_cosine: f32,
+    /// Share of the lights' light that is scattered at least once.
+    pub(super) scattered: f32,
+}
+
+impl Probes {
+    /// Every probe that guides, by its number, with its box.
+    pub(in crate::transport) fn leaves(&self) -> Vec<(u32, Aabb)> {
+        self.octree.leaves()
+    }
+
+    /// Takes what was learned of the indirect light. Half of it from the eight of a cut together:
+    /// each alone has seen few paths.
+    pub(in crate::transport) fn learn(&mut self, learned: &[(u32, Indirect)]) {
+        let family = |node: u32| node.div_ceil(8) as usize;
+        let mut families = vec![(Indirect::default(), 0.0); family(self.probes.len() as u32) + 1];
+        for (node, indirect) in learned {
+            let (sum, leaves) = &mut families[family(*node)];
+            sum.merge(indirect, 1.0);
+            *leaves += 1.0;
+        }
+        for (node, indirect) in learned {
+            let (sum, leaves) = &families[family(*node)];
+            let mut shared = Indirect::default();
+            shared.merge(indirect, 0.5);
+            shared.merge(sum, 0.5 / leaves);
+            self.probes[*node as usize].learn(&shared);
+        }
+        self.outside = OUTSIDE * self.mean_radiance();
+        self.mean_cosine = self.weighted_cosine();
+    }
+
+    /// Those of the lights around a point, if lights are chosen by them there.
+    pub fn scores(&self, point: Vec3A) -> Option<&Scores> {
+        if self.scores.is_empty() {
+            return None;
+        }
+        self.scores.get(self.octree.leaf_at(point)? as usize)?.as_ref()
+    }
+
+    /// Number of probes.
+    pub fn len(&self) -> usize {
+        self.probes.len()
+    }
+
+    /// Whether there are none, which does not happen.
+    pub fn is_empty(&self) -> bool {
+        self.probes.is_empty()
+    }
+
+    /// Mean cosine of the scattering, as the probes see it.
+    pub fn mean_cosine(&self) -> f32 {
+        self.mean_cosine
+    }
+
+    /// Share of the directions after scattering that are best drawn from the glow around a light.
+    pub fn share_of_airlight(&self) -> f32 {
+        MOST_AIRLIGHT * self.scattered
+    }
+
+    pub(super) fn weighted_cosine(&self) -> f32 {
+        let power: f32 = self.probes.iter().map(Probe::power).sum();
+        let sum: f32 = self.probes.iter().map(|probe| probe.power() * probe.g()).sum();
+        let mean = sum / power;
+        if mean.is_finite() { mean } else { self.probes[0].g() }
+    }
+
+    pub(super) fn mean_radiance(&self) -> f32 {
+        let sum: f32 = self.probes.iter().map(Probe::radiance).filter(|r| r.is_finite()).sum();
+        sum / self.probes.len() as f32
+    }
+
+    /// The density along `ray` whose medium is given; `None` where nothing scatters.
+    pub fn along(&self, medium: MediumRay, ray: &Ray) -> Option<DistancePdf> {
+        let mut distance_pdf = DistancePdfBuilder::new();
+        let mut last = None;
+        let mut radiance = 0.0;
+        self.visit(medium, ray, |leaf, ray_piece| {
+            if last != Some(leaf) {
+                radiance = self.radiance(leaf, ray.direction);
+                last = Some(leaf);
+            }
+            distance_pdf.add(&RayPiece { scattered: ray_piece.scattered * radiance, ..*ray_piece });
+            distance_pdf.transmittance()
+        });
+        distance_pdf.finish()
+    }
+
+    /// Calls `found` with the stretches along `ray` whose medium is given, from near to far, each
+    /// with the leaf it lies in and with μ_s in place of what is scattered. It says what of the
+    /// light is left behind them: where that is dark, leaves are told apart no more.
+    pub(in crate::transport) fn visit(
+        &self,
+        mut medium: MediumRay,
+        ray: &Ray,
+        mut found: impl FnMut(Option<u32>, &RayPiece) -> f32,
+    ) {
+        let mut place = self.octree.locate(ray, 0.0);
+        let mut left = 1.0;
+        while let Some(segment) = medium.next_segment() {
+            let mut t = segment.t0;
+            if segment.majorant <= 0.0 {
+                continue;
+            }
+            while t < segment.t1 {
+                let dark = left < DARK;
+                if t >= place.t_end && !dark {
+                    place = self.octree.locate(ray, t);
+                }
+                let t1 = if dark { segment.t1 } else { segment.t1.min(place.t_end) };
+                left = found(place.leaf, &self.ray_piece(&medium, &segment, t, t1, place.leaf));
+                t = t1;
+            }
+        }
+    }
+
+    /// Radiance thought to be scattered at a point back along a ray of the unit `direction`, per unit
+    /// of μ_s.
+    pub fn radiance_at(&self, point: Vec3A, direction: Vec3A) -> f32 {
+        self.radiance(self.octree.leaf_at(point), direction)
+    }
+
+    /// What is known of the light around a point; `None` outside of the octree.
+    pub(in crate::transport) fn around(&self, point: Vec3A) -> Option<Surroundings<'_>> {
+        let leaf = self.octree.leaf_at(point)?;
+        let probe = &self.probes[leaf as usize];
+        let caustic_lobes = self.caustic_lobes.of(leaf);
+        let bundled: f32 = caustic_lobes.iter().map(|lobe| lobe.fluence).sum();
+        let [direct, indirect] = probe.fluences();
+        Some(Surroundings { caustic_lobes, direct, indirect: (indirect - bundled).max(0.0) })
+    }
+
+    /// Takes bundles of light.
+    pub(in crate::transport) fn take_photon_segments(&mut self, segments: Vec<PhotonSegment>) {
+        self.caustic_lobes = CausticLobes::new(segments, self.probes.len());
+    }
+
+    /// Length of the diagonal of the cube that the probes fill.
+    pub(in crate::transport) fn size(&self) -> f32 {
+        self.octree.bounds().diagonal()
+    }
+
+    /// The middle of that cube.
+    pub(in crate::transport) fn center(&self) -> Vec3A {
+        self.octree.bounds().center()
+    }
+
+    fn radiance(&self, leaf: Option<u32>, direction: Vec3A) -> f32 {
+        leaf.map_or(self.outside, |leaf| {
+            in_scattered(&self.probes[leaf as usize], self.caustic_lobes.of(leaf), direction)
+        })
+    }
+
+    /// The part of a segment between two parameters, inside of a leaf.
+    fn ray_piece(
+        &self,
+        medium: &MediumRay,
+        segment: &Segment,
+        t0: f32,
+        t1: f32,
+        leaf: Option<u32>,
+    ) -> RayPiece {
+        let majorant = segment.majorant;
+        let (mu_t, mu_s) = if segment.uniform {
+            let c = medium.coefficients(t0);
+            // The clearest channel that is not clear sees farthest.
+            let clear = c.mu_t.cmpeq(Vec3A::ZERO);
+            let least = Vec3A::select(clear, Vec3A::splat(majorant), c.mu_t).min_element();
+            (least, mean(c.mu_s))
+        } else {
+            let (density, albedo) = leaf.map_or((0.5, 0.5), |leaf| {
+                let probe = &self.probes[leaf as usize];
+                (probe.density, probe.albedo)
+            });
+            (majorant * density, majorant * density * albedo)
+        };
+        RayPiece { t0, t1, mu_t, majorant, scattered: mu_s }
+    }
+}
+
+/// The light around a point, as ∫ L dω of its parts.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::transport) struct Surroundings<'p> {
+    /// Bundles of light that metals throw.
+    pub(in crate::transport) caustic_lobes: &'p [CausticLobe],
+    /// What comes straight from lights.
+    pub(in crate::transport) direct: f32,
+    /// All else.
+    pub(in crate::transport) indirect: f32,
+}
+
+/// ∫ L ρ dω in a leaf back along a ray with the unit `direction`.
+pub(super) fn in_scattered(probe: &Probe, caustic_lobes: &[CausticLobe], direction: Vec3A) -> f32 {
+    let even = probe.in_scattered(direction);
+    caustic_lobes.iter().fold(even, |sum, lobe| sum + lobe.in_scattered(probe.g(), direction))
+}

@@ -1,0 +1,193 @@
+//! What one path brings to its pixel, and whatever can sample a pixel.
+
+use glam::UVec2;
+
+use super::observer::{Observer, PathStep};
+use super::tracking::MOST_COLLISIONS;
+use super::tracking::event::{Event, Flight};
+use crate::error::{Progress, Result, report};
+use crate::math::{Rgb, mean};
+
+/// What one path brought to its pixel: four parts that sum to the beauty, and what else is kept.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PathSample {
+    /// Volume emission seen on the camera ray.
+    pub emission: Rgb,
+    /// Environment and emitting surfaces seen directly.
+    pub background: Rgb,
+    /// Light after one scattering event or reflection.
+    pub direct: Rgb,
+    /// Light after more of them.
+    pub indirect: Rgb,
+    /// 1 − transmittance to the background; 1 on surfaces.
+    pub alpha: f32,
+    /// Distance of the first event or surface, if there was one.
+    pub depth: Option<f32>,
+    /// Tentative collisions of all walks of the path, and steps of ray marching.
+    pub tracking_steps: u32,
+    /// Whether the path was cut, at [`path::GUARD`] events or [`tracking::MOST_COLLISIONS`].
+    pub guard_hit: bool,
+}
+
+impl PathSample {
+    /// All light of the path.
+    pub fn beauty(&self) -> Rgb {
+        self.emission + self.background + self.direct + self.indirect
+    }
+}
+
+/// The contributions of one path, as they are gathered.
+#[derive(Debug, Default)]
+pub(super) struct Contributions {
+    sample: PathSample,
+}
+
+impl Contributions {
+    /// Adds volume emission that is found on a ray after so many scattering events and reflections.
+    pub(super) fn add_emission(
+        &mut self,
+        scatters: u32,
+        contribution: Rgb,
+        observer: &mut impl Observer,
+    ) {
+        match scatters {
+            0 => self.sample.emission += contribution,
+            _ => self.add_scattered(scatters, contribution),
+        }
+        observer.step(PathStep::Emission { contribution });
+    }
+
+    /// Adds radiance of the surface or environment at the end of a ray.
+    pub(super) fn add_end(
+        &mut self,
+        scatters: u32,
+        contribution: Rgb,
+        observer: &mut impl Observer,
+    ) {
+        match scatters {
+            0 => self.sample.background += contribution,
+            _ => self.add_scattered(scatters, contribution),
+        }
+        observer.step(PathStep::End { contribution });
+    }
+
+    /// Adds what a light sample brings to vertex number `scatters`.
+    pub(super) fn add_light(
+        &mut self,
+        scatters: u32,
+        contribution: Rgb,
+        observer: &mut impl Observer,
+    ) {
+        self.add_scattered(scatters, contribution);
+        observer.step(PathStep::Light { contribution });
+    }
+
+    /// Adds light that comes by `scatters` events, at least one.
+    fn add_scattered(&mut self, scatters: u32, contribution: Rgb) {
+        match scatters {
+            1 => self.sample.direct += contribution,
+            _ => self.sample.indirect += contribution,
+        }
+    }
+
+    /// Adds a throughput that is no number, so that the film counts the sample.
+    pub(super) fn spoil(&mut self, throughput: Rgb) {
+        self.sample.indirect += throughput;
+    }
+
+    /// Counts the collisions of a walk, and notes a walk that was cut.
+    pub(super) fn count(&mut self, collisions: u32) {
+        self.sample.tracking_steps = self.sample.tracking_steps.saturating_add(collisions);
+        self.sample.guard_hit |= collisions >= MOST_COLLISIONS;
+    }
+
+    /// Notes that the path is cut.
+    pub(super) fn cut(&mut self) {
+        self.sample.guard_hit = true;
+    }
+
+    /// Whether a walk of the path was cut, or the path itself.
+    pub(super) fn is_cut(&self) -> bool {
+        self.sample.guard_hit
+    }
+
+    /// Notes coverage and depth of the camera ray, which a surface ends at `d`, if that is finite.
+    /// `transmittance` is the emission walk's, if it had one.
+    pub(super) fn note_first_event(&mut self, flight: &Flight, d: f32, transmittance: Option<Rgb>) {
+        let is_open = d == f32::INFINITY;
+        let (opacity, depth) = match flight.event {
+            Event::Absorbed { real: false, .. } => (1.0, None),
+            Event::Absorbed { t, .. } | Event::Scattered { t, .. } => (1.0, Some(t)),
+            Event::Reached if is_open => (1.0 - mean(flight.weight), None),
+            Event::Reached => (1.0, Some(d)),
+        };
+        let smooth = transmittance.filter(|_| is_open).map(|t| 1.0 - mean(t));
+        (self.sample.alpha, self.sample.depth) = (smooth.unwrap_or(opacity), depth);
+    }
+
+    /// The finished sample.
+    pub(super) fn finish(self) -> PathSample {
+        self.sample
+    }
+}
+
+/// What the pilot pass of a picture has found, on which all samples of a pixel but the first rest.
+/// Only [`PixelSampler::prepare`] makes one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Prepared {
+    pub(super) guided_flights: Option<f32>,
+}
+
+impl Prepared {
+    /// Nothing was to be found.
+    pub(super) const NOTHING: Self = Self { guided_flights: None };
+
+    /// Guided flights of a camera ray, relative to those that the probes propose; 0 where none pay.
+    /// `None` where no pilot decides it.
+    pub fn guided_flights(&self) -> Option<f32> {
+        self.guided_flights
+    }
+}
+
+/// Which sample of a pixel.
+#[derive(Clone, Copy, Debug)]
+pub enum SampleNumber<'p> {
+    /// The first, which waits for no pilot pass, so that a camera on the move never does.
+    First,
+    /// Any other, counted from 0 as all are.
+    Later(u32, &'p Prepared),
+}
+
+impl<'p> SampleNumber<'p> {
+    /// Sample `index`, counted from 0.
+    pub fn new(index: u32, prepared: &'p Prepared) -> Self {
+        match index {
+            0 => Self::First,
+            _ => Self::Later(index, prepared),
+        }
+    }
+
+    /// Its index, counted from 0.
+    pub fn index(&self) -> u32 {
+        match *self {
+            Self::First => 0,
+            Self::Later(index, _) => index,
+        }
+    }
+}
+
+/// Anything that can sample a pixel: film and session know nothing more.
+pub trait PixelSampler: Send + Sync {
+    /// One path through a pixel; the same arguments give the same path.
+    fn sample(&self, pixel: UVec2, number: SampleNumber) -> PathSample;
+
+    /// Runs the pilot pass, which finds what all samples of a pixel but the first rest on. The same
+    /// sampler always finds the same.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`](crate::error::Error::Cancelled) where `progress` says so.
+    fn prepare(&self, progress: Progress) -> Result<Prepared> {
+        report(progress, 1.0)?;
+        Ok(Prepared::NOTHING)
+    }
+}
