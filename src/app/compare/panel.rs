@@ -121,7 +121,7 @@ pub fn bias(document: &Document, second_side: &SecondSide) -> Option<&'static st
     }
 }
 
-/// What both sides get equal shares of, and their seeds.
+/// Shows whether both sides get equal time or equal samples, and their seeds.
 fn shares(ui: &mut Ui, panel: &mut ComparePanel<'_>) {
     let Some(compared) = &mut panel.editor.document.compared else { return };
     let choices = [
@@ -160,7 +160,7 @@ pub fn layouts(ui: &mut Ui, layout: &mut CompareLayout, (kinds, of_two): (&[Comp
     }
 }
 
-/// What a kind of view is called and what it shows.
+/// The name of a kind of view, and an explanation.
 fn in_words(kind: CompareLayout, of_two: bool) -> (&'static str, String) {
     let flip = format!(" Hold {} to see the other side.", FLIP_KEY.name());
     match kind {

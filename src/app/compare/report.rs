@@ -47,7 +47,7 @@ pub fn tables(compare: &CompareState, pictures: usize) -> Vec<FigureTable> {
         tables.push(table("", names, &columns));
     }
     if let Some(region) = compare.second_side.region_figures() {
-        tables.push(table("rectangle", names, &of_region(region, errors)));
+        tables.push(table("region", names, &of_region(region, errors)));
     }
     tables
 }

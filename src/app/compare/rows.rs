@@ -95,7 +95,7 @@ fn view_row(
     ui.horizontal_wrapped(row).inner
 }
 
-/// Shows the rectangle on pictures of `size` and what is known of it; `biased` says which sides are.
+/// Shows the region on pictures of `size` and its figures; `biased` says which sides are.
 fn region(
     ui: &mut Ui,
     region: &mut PictureRegion,

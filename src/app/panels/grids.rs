@@ -119,7 +119,7 @@ pub fn histogram_bars(painter: &Painter, rect: Rect, voxels: &VoxelDescription, 
     }
 }
 
-/// What the grid may be for, what it is for, and whether that is a guess; the one that was clicked.
+/// Shows the roles a grid may have, its own, and whether that is a guess; the one that was clicked.
 fn roles<'n>(
     ui: &mut Ui,
     volume: &VolumeSettings,

@@ -149,7 +149,7 @@ fn brightness(light: &LightSettings) -> String {
     }
 }
 
-/// What a light is, how bright, where and how large; the name of the edit if anything changed.
+/// Shows the kind, brightness, place and size of a light; the name of the edit if anything changed.
 fn keys(
     ui: &mut Ui,
     light: &mut LightSettings,

@@ -20,7 +20,7 @@ const SHAPES: [(SurfaceShape, &str, &str); 4] = [
     (SurfaceShape::Sphere, "Sphere", "A sphere."),
     (SurfaceShape::Box, "Box", "An axis-aligned box."),
 ];
-/// What a new surface measures, in sizes of what fills space.
+/// The size of a new surface, relative to that of what fills space.
 const NEW_SIZE: f32 = 0.25;
 const MATERIALS: [(Option<MaterialKind>, &str, &str); 4] = [
     (None, "Auto", "Diffuse gray, or black if the surface emits."),

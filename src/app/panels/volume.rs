@@ -45,7 +45,7 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
     });
 }
 
-/// What was guessed, struck out where it does not stand any more: what is below stays where it is.
+/// Shows the guesses, struck out where they stand no more, so that the rows below stay in place.
 fn notes(ui: &mut Ui, panel: &Panel<'_>) {
     let volumes = |document: &Document| document.settings.volume.first().cloned();
     let present = volumes(&panel.editor.document).zip(volumes(panel.editor.opened()));
@@ -63,7 +63,7 @@ fn notes(ui: &mut Ui, panel: &Panel<'_>) {
     }
 }
 
-/// What a volume is called: its name, or its file, or its shape.
+/// The title of a volume: its name, or its file, or its shape.
 fn title(volume: &VolumeSettings, index: usize) -> String {
     if !volume.name.is_empty() {
         return volume.name.clone();

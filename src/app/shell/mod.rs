@@ -6,13 +6,14 @@
 //! - `bars`, `unsaved_bar`, `start`, `status`: rows that come and go, and the status line.
 //! - `paths`, `file_requests`, `save`, `export`, `opened`: choosing, opening and writing files.
 //! - `guard`, `unsaved`: no change of the scene is lost unasked.
-//! - `measures`, `snapshots`, `sweep`, `view`: where the window meets those features.
+//! - `compare`, `measures`, `snapshots`, `sweep`, `view`: where the window meets those features.
 //! - `preferences`: what the window keeps between runs, and where.
 //! - `frame_stats`: what the window costs (`FLAMBEAU_FRAME_STATS=FILE`).
 
 mod app;
 mod bars;
 mod chrome;
+mod compare;
 mod execute;
 mod export;
 mod file_requests;

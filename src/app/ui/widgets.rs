@@ -119,12 +119,12 @@ impl Number<'_> {
         self.show_as(ui, value, &help, limits)
     }
 
-    /// The same with a help of its own and the limits between which the number may be typed.
+    /// Shows the row with a help of its own and the limits between which the number may be typed.
     pub fn show_as(self, ui: &mut Ui, value: &mut f32, help: &str, limits: [f64; 2]) -> bool {
         self.show_beside(ui, value, (help, limits), (0.0, |_: &mut Ui, _: &mut f32| {}))
     }
 
-    /// The same with something more behind the number, which takes that width.
+    /// Shows the row with something more behind the number, which takes that width.
     pub fn show_beside(
         self,
         ui: &mut Ui,
@@ -245,7 +245,7 @@ impl Vector<'_> {
         changed
     }
 
-    /// The same with a help of its own.
+    /// Shows the row with a help of its own.
     pub fn show_as(self, ui: &mut Ui, value: &mut [f32; 3], help: &str) -> bool {
         let before = *value;
         let key = keys::find(self.key);
