@@ -207,6 +207,12 @@ impl Window {
             self.click(Role::Button, "Cancel");
             self.until("the sweep has ended", |app| !app.sweep().is_running());
         }
+        self.until("everything asked for has arrived", |app| {
+            app.engine().opening().is_none() && !app.reference().is_loading()
+        });
+        while self.has("Keeping…") {
+            self.settle();
+        }
         self.close_what_is_open();
         if self.app().engine().paused() {
             self.press(Modifiers::NONE, Key::Space);

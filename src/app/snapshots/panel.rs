@@ -21,10 +21,13 @@ use crate::render::Picture;
 const PICTURE: Vec2 = vec2(0.5 * LARGEST_THUMBNAIL.x as f32, 0.5 * LARGEST_THUMBNAIL.y as f32);
 /// Height of a line of text under it.
 const LINE: f32 = 15.0;
-/// Width of the field for a name.
-const NAME_WIDTH: f32 = 150.0;
+/// Least and largest width of the field for a name, and of that for a note.
+const NAME_WIDTHS: [f32; 2] = [70.0, 150.0];
+const NOTE_WIDTHS: [f32; 2] = [40.0, 400.0];
 /// Room that the buttons behind name and note take.
 const BUTTONS_WIDTH: f32 = 440.0;
+/// Room that the button takes which hides the strip.
+const HIDE_WIDTH: f32 = 60.0;
 /// Room that the button takes which undoes a deletion.
 const UNDO_WIDTH: f32 = 100.0;
 
@@ -73,10 +76,8 @@ pub fn show(ui: &mut Ui, snapshots: &mut Snapshots, live: Option<&Arc<Picture>>)
 /// The line above the pictures: what is shown, to be named and used, or what the strip is for.
 fn head(ui: &mut Ui, snapshots: &mut Snapshots, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
-        let buttons = match snapshots.strip.last_deleted() {
-            Some(_) => BUTTONS_WIDTH + UNDO_WIDTH,
-            None => BUTTONS_WIDTH,
-        };
+        let undo = snapshots.strip.last_deleted().map_or(0.0, |_| UNDO_WIDTH);
+        let (buttons, hide) = (BUTTONS_WIDTH + undo, HIDE_WIDTH + undo);
         let count = snapshots.strip.items().len();
         let bytes = snapshots.strip.bytes();
         if let Some(item) = snapshots.strip.shown_item_mut() {
@@ -89,7 +90,10 @@ fn head(ui: &mut Ui, snapshots: &mut Snapshots, commands: &mut Vec<Command>) {
             };
             ui.label(RichText::new(text).color(color::TEXT_STRONG));
             let help = "K keeps the picture, the left and right arrows flip through the snapshots.";
-            ui.add(egui::Label::new(RichText::new(help).color(color::TEXT_DIM)).truncate());
+            ui.scope(|ui| {
+                ui.set_max_width((ui.available_width() - hide).max(0.0));
+                ui.add(egui::Label::new(RichText::new(help).color(color::TEXT_DIM)).truncate());
+            });
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             button(ui, Command::FoldStrip, "Hide", commands);
@@ -103,9 +107,12 @@ fn head(ui: &mut Ui, snapshots: &mut Snapshots, commands: &mut Vec<Command>) {
 /// Name and note of the snapshot shown, and what can be done with it; `buttons` is the room that
 /// the buttons take.
 fn details(ui: &mut Ui, item: &mut StripItem, buttons: f32, commands: &mut Vec<Command>) {
-    let name = TextEdit::singleline(&mut item.record.name).desired_width(NAME_WIDTH);
+    let [least, most] = NAME_WIDTHS;
+    let width = (ui.available_width() - buttons - NOTE_WIDTHS[0]).clamp(least, most);
+    let name = TextEdit::singleline(&mut item.record.name).desired_width(width);
     ui.add(name).accessible_name("Snapshot name").on_hover_text("The name of this snapshot.");
-    let width = (ui.available_width() - buttons).clamp(60.0, 400.0);
+    let [least, most] = NOTE_WIDTHS;
+    let width = (ui.available_width() - buttons).clamp(least, most);
     let note = TextEdit::singleline(&mut item.record.note).hint_text("note").desired_width(width);
     let help = "A note about this snapshot. When snapshots need too much disk space, those without \
                 a note are deleted first.";

@@ -11,7 +11,8 @@ const MOST_NAMES: usize = 4;
 /// Which strategy to leave on and what that brings, without a full stop.
 pub fn headline(ranking: &Ranking) -> String {
     let Some(best) = ranking.best() else {
-        return "Too few samples to rank the strategies; allow more time for each".to_owned();
+        return "There are too few samples to rank the strategies; allow more time for each"
+            .to_owned();
     };
     if ranking.entries.iter().filter(|entry| entry.is_rendered()).count() == 1 {
         return "No toggle changes anything in this shot".to_owned();
