@@ -13,7 +13,7 @@ use crate::scene::{self, Overrides, VolumeCache};
 const SIZE: UVec2 = UVec2::new(16, 12);
 
 /// Asks for everything: probes with scores of several lights, caustics, learning, the optimal
-/// majorant and a pilot, in a volume with cells that glows.
+/// majorant and a pilot, in an emissive volume with cells.
 const SCENE: &str = r#"
     [camera]
     position = [0, -4, 0]
@@ -77,8 +77,8 @@ fn check_giving_up<R: Send>(
     }
 }
 
-/// Every probe asks, and so does every path that one learns from, every ray from a metal, every pixel
-/// that is measured.
+/// Every probe reports progress, and so do every path that one learns from, every photon and every
+/// pilot pixel.
 #[test]
 fn setting_up_a_frame_can_be_given_up_anywhere() {
     let scene = Arc::new(Scene::of_text(SCENE));
