@@ -182,7 +182,7 @@ impl<'p> SampleNumber<'p> {
     }
 }
 
-/// A sampler of pixels, all that film and session know of light transport.
+/// A sampler of pixels: the only interface of light transport to film and session.
 pub trait PixelSampler: Send + Sync {
     /// One path through a pixel; the same arguments give the same path.
     fn sample(&self, pixel: UVec2, number: SampleNumber) -> PathSample;

@@ -12,7 +12,7 @@ pub struct Scene {
     pub world: World,
     /// Surfaces of the scene.
     pub surfaces: Vec<Surface>,
-    /// Lights and environment of the scene; emissive volumes are sampled as lights through `world`.
+    /// Lights and environment of the scene; emissive volumes themselves belong to `world`.
     pub lights: Lights,
     /// Most real scattering events and reflections of a path; 0 for no limit but the guard.
     pub max_scatters: u32,

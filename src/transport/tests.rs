@@ -45,8 +45,8 @@ const SCENE: &str = r#"
     material = { type = "conductor", alpha = 0.1, reflectance = 0.9 }
 "#;
 
-/// Runs `work` on one thread and says stop at the question of that number; how it ended, and the
-/// number of questions.
+/// Runs `work` on one thread and cancels it at the call of that number to `progress`; returns the
+/// result and the number of calls.
 fn questions<R: Send>(
     stop_at: u64,
     work: impl Fn(Progress) -> Result<R> + Send + Sync,
@@ -105,7 +105,7 @@ fn building_volumes_can_be_given_up_anywhere() {
     });
 }
 
-/// Whoever could have given it up and did not gets the same paths.
+/// Work that could have been cancelled and was not gives the same paths.
 #[test]
 fn what_was_not_given_up_is_the_same() {
     let scene = Arc::new(Scene::of_text(SCENE));

@@ -97,7 +97,7 @@ impl Transmittance {
         }
     }
 
-    /// Moves on from `t` to `end` under a majorant; breaks where roulette ends the walk.
+    /// Moves on from `t` to `end` under a majorant; breaks where the walk ends.
     #[inline]
     pub(super) fn advance(
         &mut self,

@@ -1,7 +1,7 @@
 //! Number of guided flights for a picture, measured by a pilot pass before the second sample.
 //!
 //! Probes cost time along every ray, and each guided flight is a path. Inside of smoke with a lamp
-//! in it they reduce the variance a hundred times; a cloud under an even sky, or fire that hardly
+//! in it they lower the noise a hundred times; a cloud under an even sky, or fire that hardly
 //! scatters, is as noisy without them and takes half of the time. So each of a few shares is tried
 //! on some pixels, and the one with the least variance times cost is taken.
 //!

@@ -1,5 +1,5 @@
-//! Volume caustics: photons traced from lights over specular surfaces (metals of low roughness)
-//! tell probes which directions caustics come from.
+//! Volume caustics: photons leave specular surfaces (metals of low roughness), with the power that
+//! lights give them there, and tell probes which directions caustics come from.
 //!
 //! A path that scatters in a caustic gathers its light only if it is scattered towards the specular
 //! surface so that the light's image is ahead. Directions to that image are drawn beside those of

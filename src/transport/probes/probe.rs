@@ -58,7 +58,7 @@ pub struct Indirect {
     fluence: f32,
     /// ∫ L ω dω, ω towards the light.
     flux: Vec3A,
-    /// Unit direction of the flux, and below the mean cosine to it.
+    /// Unit direction of `flux`; `cosine` is the mean cosine to it, both derived from the moments.
     axis: Vec3A,
     cosine: f32,
 }

@@ -122,7 +122,7 @@ impl Probes {
 
     /// Calls `found` with the pieces of `ray` in `medium`, from near to far, each with the leaf it
     /// lies in and with μ_s in place of the scattered radiance. `found` returns the transmittance
-    /// behind the piece: once that is dark, leaves are no longer told apart.
+    /// up to the end of the piece: once that is dark, leaves are no longer told apart.
     pub(in crate::transport) fn visit(
         &self,
         mut medium: MediumRay,

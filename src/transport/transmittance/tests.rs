@@ -74,7 +74,7 @@ fn expected(world: &World, ray: &Ray) -> [DVec3; 5] {
 fn estimates(world: &World, ray: Ray, reads: f32, loose: f32, index: u32) -> [DVec3; 5] {
     let mut rng = PathRng::new(0, UVec2::ZERO, index);
     let jitters = [rng.at(Slot::TransmittanceA), rng.at(Slot::TransmittanceB)];
-    let mut way = Transmittance::new(reads, jitters, &mut rng);
+    let mut estimate = Transmittance::new(reads, jitters, &mut rng);
     let mut medium = world.along(ray, f32::INFINITY);
     let mut found = [DVec3::ZERO; 5];
     let mut place = 0;
@@ -83,15 +83,15 @@ fn estimates(world: &World, ray: Ray, reads: f32, loose: f32, index: u32) -> [DV
         loop {
             // Gaps before the segment add nothing.
             while place < PLACES.len() && PLACES[place] <= t {
-                found[place] = way.estimate().as_dvec3();
+                found[place] = estimate.estimate().as_dvec3();
                 place += 1;
             }
             let next = PLACES.get(place).map_or(segment.t1, |&p| p.min(segment.t1));
             let goes_on = if segment.uniform {
                 let part = Segment { t0: t, t1: next, ..segment };
-                way.cross_uniform(medium.coefficients(t).mu_t, &part, &mut rng)
+                estimate.cross_uniform(medium.coefficients(t).mu_t, &part, &mut rng)
             } else {
-                way.advance(&medium, loose * segment.majorant, t, next, &mut rng)
+                estimate.advance(&medium, loose * segment.majorant, t, next, &mut rng)
             };
             if goes_on.is_break() {
                 // The walk has ended.
@@ -103,7 +103,7 @@ fn estimates(world: &World, ray: Ray, reads: f32, loose: f32, index: u32) -> [DV
             }
         }
     }
-    found[place..].fill(way.estimate().as_dvec3());
+    found[place..].fill(estimate.estimate().as_dvec3());
     found
 }
 
