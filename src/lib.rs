@@ -4,21 +4,24 @@
 //!
 //! # Rooms
 //!
-//! Arrows point down only; the core knows neither the scene file nor the window.
+//! Each room imports from rooms above it in this table only, and `tests/rooms` checks that; the
+//! core depends neither on the scene file nor on the window.
 //!
-//! | room | what it holds |
+//! | room | contents |
 //! |---|---|
+//! | [`error`] | errors that name file, field and fix; progress and cancellation |
+//! | [`format`](mod@format) | numbers in words |
+//! | [`math`] | rays, boxes, frames, random numbers |
+//! | [`files`] | files written whole or not at all, and changes to them detected |
+//! | [`sampling`] | samplers with their densities, MIS weights |
+//! | [`surface`], [`volume`] | shapes with their BSDFs; participating media |
+//! | [`light`] | lights, and the choice of one among many |
+//! | [`transport`] | light transport: read [`transport::path`] first, then [`transport::tracking`] |
+//! | [`render`] | film, schedule, threads that sample, pictures for the window, two renders compared |
+//! | [`image`] | EXR, PNG, NPY, tone mapping, maps and plots, references, error metrics |
+//! | [`scene`] | scene files: the one settings struct, its keys, parsing, saving, assembling |
 //! | `app` | the window (feature `gui`): one file a panel, commands in one enum, one theme |
 //! | [`cli`] | the command line: one file a command |
-//! | [`scene`] | scene files: the one settings struct, its keys, parsing, saving, assembling |
-//! | [`render`] | film, schedule, the threads that sample, pictures for the window, two renders compared |
-//! | [`image`] | EXR, PNG, NPY, tone mapping, maps and plots, references, error metrics |
-//! | [`transport`] | how light moves: read [`transport::path`] first, then [`transport::tracking`] |
-//! | [`light`], [`surface`], [`volume`] | what emits, what reflects, what fills space |
-//! | [`sampling`], [`math`] | samplers with their densities, MIS weights; rays, boxes, random numbers |
-//! | [`format`](mod@format) | numbers in words |
-//! | [`files`] | writing a file whole or not at all, telling its states apart |
-//! | [`error`] | what can go wrong, in words |
 //!
 //! # A picture
 //!

@@ -1,35 +1,35 @@
-//! How one light is chosen among many.
+//! The choice of one light among many.
 
 use super::kinds::Light;
 use super::scores::LightProbabilities;
 
-/// Which lights take part, and how one is chosen among them.
+/// The lights that take part in the choice, and the method of choosing one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightChoice {
-    /// Emissive volumes are among them.
+    /// Whether emissive volumes take part.
     pub volumes: bool,
-    /// How one is chosen.
+    /// Method of the choice.
     pub by: By,
 }
 
-/// How a light is chosen.
+/// Method of choosing a light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum By {
-    /// By what the hierarchy thinks it may bring.
+    /// In proportion to the irradiance that the hierarchy (a light tree) estimates.
     Hierarchy,
-    /// Each has the same probability, wherever it is.
+    /// With the same probability for each light, wherever it is.
     Uniform,
-    /// By what is known of the place. They hold for one receiver.
+    /// By probabilities from the scores of a probe, which hold for one receiver.
     Shares(LightProbabilities),
 }
 
-/// A light that was chosen.
+/// A chosen light.
 #[derive(Clone, Copy, Debug)]
 pub struct ChosenLight<'s> {
-    /// Its index in the scene.
+    /// Index of the light in the scene.
     pub index: u32,
     /// The light.
     pub light: &'s Light,
-    /// With which probability.
+    /// Probability of the choice.
     pub probability: f32,
 }

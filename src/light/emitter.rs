@@ -1,4 +1,5 @@
-//! The arguments of the choice among lights: emitters as the hierarchy sees them, and receivers.
+//! Arguments of the choice among lights: emitters, which summarize lights for the hierarchy, and
+//! receivers.
 
 use glam::Vec3A;
 
@@ -7,23 +8,23 @@ use crate::math::Aabb;
 /// Upper bound of a light's importance, so that sums of importances stay finite.
 pub(super) const MOST_IMPORTANT: f32 = 1e30;
 
-/// A light as the hierarchy sees it.
+/// Summary of a light for the hierarchy.
 #[derive(Clone, Copy, Debug)]
 pub struct Emitter {
-    /// A box around it.
+    /// A box around the light.
     pub bounds: Aabb,
-    /// Radiant intensity, W/sr; a rough value will do. Without any it is never chosen.
+    /// Radiant intensity, W/sr; a rough value will do. A light of intensity 0 is never chosen.
     pub intensity: f32,
     /// The cone outside of which a light like a spot sends nothing: its unit axis and the cosine of
     /// its half angle.
     pub cone: Option<(Vec3A, f32)>,
 }
 
-/// Where light is wanted.
+/// A point that light samples are drawn for.
 #[derive(Clone, Copy, Debug)]
 pub struct Receiver {
-    /// The point.
+    /// Position in world space.
     pub position: Vec3A,
-    /// On surfaces the unit normal of the lit side.
+    /// Unit normal of the lit side on a surface; `None` in a volume.
     pub normal: Option<Vec3A>,
 }

@@ -1,4 +1,4 @@
-//! The kinds of lights: how each is sampled, and how the hierarchy sees it.
+//! The kinds of lights: sampling of each, and its summary for the hierarchy.
 
 use glam::{Vec2, Vec3A};
 
@@ -23,25 +23,25 @@ pub enum Light {
     Surface {
         /// Index among the scene's surfaces.
         index: usize,
-        /// A copy of its shape.
+        /// A copy of the surface's shape.
         shape: Shape,
-        /// Its radiance.
+        /// Radiance of the light.
         radiance: Rgb,
     },
     /// The emissive volume of this index among the world's instances.
     Volume(u32),
     /// An emitting shape that no ray meets: it neither shows nor hides anything.
     Invisible {
-        /// Its shape.
+        /// Shape of the light.
         shape: Shape,
-        /// Its radiance.
+        /// Radiance of the light.
         radiance: Rgb,
     },
 }
 
 impl Light {
-    /// Draws a direction from `from` towards it, its density without the choice of the light;
-    /// `None` for volumes, whose light comes from all along the line of sight.
+    /// Draws a direction from `from` towards the light, with a density that excludes the choice of
+    /// the light; `None` for volumes, whose light comes from all along the line of sight.
     pub fn sample(&self, from: Vec3A, rng: &mut PathRng) -> Option<LightSample> {
         let mut u = || Vec2::new(rng.at(Slot::LightX), rng.at(Slot::LightY));
         match self {
@@ -63,7 +63,7 @@ impl Light {
         }
     }
 
-    /// How the hierarchy sees it; `None` for a sun, which is nowhere.
+    /// Summary of the light for the hierarchy; `None` for a sun, which is infinitely far away.
     pub(super) fn emitter(&self, world: &World) -> Option<Emitter> {
         match self {
             Self::Sun(_) => None,

@@ -1,4 +1,5 @@
-//! All lights of a scene: the choice among them, and densities of what is met without choosing.
+//! All lights of a scene: the choice among them, and the densities of that choice for lights that
+//! scattered rays meet.
 
 use glam::Vec3A;
 
@@ -15,7 +16,7 @@ use crate::volume::world::World;
 /// All lights of a scene.
 #[derive(Clone, Debug, Default)]
 pub struct Lights {
-    /// Radiance from everywhere, met by chance only.
+    /// Radiance from all directions, gathered by BSDF and phase sampling only.
     pub environment: Rgb,
     lights: Vec<Light>,
     light_of_surface: Vec<Option<u32>>,
@@ -51,8 +52,8 @@ impl Lights {
         Self { environment, lights, light_of_surface, light_of_instance, all, without_volumes }
     }
 
-    /// The light that `pick`, in [0, 1), chooses for a receiver; `None` where no light can bring
-    /// anything.
+    /// The light that `pick`, in [0, 1), chooses for a receiver; `None` where no light can
+    /// contribute.
     pub fn choose(
         &self,
         to: &Receiver,
@@ -73,13 +74,13 @@ impl Lights {
         self.selector(volumes).len()
     }
 
-    /// Rough irradiance of a light at the receiver, if nothing is in the way.
+    /// Rough irradiance of a light at the receiver, if unoccluded.
     pub fn irradiance(&self, light: u32, to: &Receiver) -> f32 {
         self.all.guess(light, to).map_or(0.0, |guess| guess.0)
     }
 
-    /// The choice by `scores` at a receiver that passes on light from a unit direction by a
-    /// `value`; a rough one will do.
+    /// The choice by `scores` at a receiver whose BSDF or phase function has the `value` for a unit
+    /// direction; a rough value will do.
     pub fn choice_by(
         &self,
         scores: &Scores,
@@ -95,8 +96,8 @@ impl Lights {
         LightChoice { volumes, by: By::Shares(shares) }
     }
 
-    /// Density over solid angle with which, from a receiver, the direction is drawn that ended at
-    /// `hit` on the surface `index`, the choice of the light included; 0 where it cannot be.
+    /// Density over solid angle with which a light sample at a receiver has the direction to `hit`
+    /// on the surface `index`, the choice of the light included; 0 where it cannot be drawn.
     pub fn pdf_of_surface(
         &self,
         index: usize,
@@ -121,8 +122,8 @@ impl Lights {
         }
     }
 
-    /// Radiance of every sun's disk seen along the unit `direction`, each with the density of
-    /// looking there from a receiver by a choice.
+    /// Radiance of every sun's disk seen along the unit `direction`, each with the density with
+    /// which light samples at a receiver have that direction.
     pub fn suns_behind(
         &self,
         from: Option<(&Receiver, &LightChoice)>,
@@ -139,7 +140,7 @@ impl Lights {
         })
     }
 
-    /// All lights that are somewhere.
+    /// Summaries of all lights at finite distances.
     pub fn emitters(&self, world: &World) -> Vec<Emitter> {
         self.lights.iter().filter_map(|light| light.emitter(world)).collect()
     }

@@ -1,5 +1,5 @@
-//! Lights at a point. Inside a scattering medium their 1/d² has infinite variance; sphere lights
-//! don't.
+//! Point and spot lights. Inside a scattering medium their 1/d² has infinite variance, unlike that
+//! of sphere lights.
 
 use glam::Vec3A;
 
@@ -7,16 +7,16 @@ use super::emitter::Emitter;
 use super::sample::LightSample;
 use crate::math::{Aabb, Rgb, luminance};
 
-/// The same intensity in all directions.
+/// A point light: the same intensity in all directions.
 #[derive(Clone, Debug)]
 pub struct Point {
-    /// Where it is.
+    /// Position in world space.
     pub position: Vec3A,
-    /// W/sr.
+    /// Radiant intensity, W/sr.
     pub intensity: Rgb,
 }
 
-/// A cone of light with a soft edge.
+/// A spot light: a cone of light with a soft edge.
 #[derive(Clone, Debug)]
 pub struct Spot {
     position: Vec3A,
@@ -24,7 +24,7 @@ pub struct Spot {
     axis: Vec3A,
     intensity: Rgb,
     cos_edge: f32,
-    /// Cosine from which inwards the intensity is full.
+    /// Cosine of the angle to the axis inside of which the intensity is full.
     cos_full: f32,
 }
 
@@ -40,8 +40,8 @@ impl Point {
 }
 
 impl Spot {
-    /// A spot light aimed at `target`. `cone` is its full angle in degrees; `blend`, 0 to 1, the
-    /// share of the half angle over which the edge fades.
+    /// A spot light aimed at `target`. `cone` is the cone's full angle in degrees; `blend`, 0 to 1,
+    /// the share of the half angle over which the edge fades.
     pub fn new(position: Vec3A, target: Vec3A, intensity: Rgb, cone: f32, blend: f32) -> Self {
         let half = 0.5 * cone.to_radians();
         let axis = (target - position).normalize();

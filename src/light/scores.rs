@@ -1,36 +1,38 @@
-//! What is known of the lights around a place: what the best few of them bring, by name, and what
-//! is left to the hierarchy.
+//! Scores of the lights around a place: the visibility of the best few lights, and the share of the
+//! choices left to the hierarchy for all others.
 //!
 //! At a receiver x light l is chosen with probability q_l(x) = s_l(x) + r h_l(x), where h_l is the
-//! hierarchy's and r, the share that is left to it, never vanishes: whatever the scores say, each
-//! light that can bring anything may be chosen. Scores are relative to the hierarchy's guess at an
-//! unhindered light, so that they hold around the place: s_l(x) goes with the guess at x.
+//! hierarchy's and r, the share that is left to it, never vanishes: whatever the scores, each light
+//! that can contribute may be chosen. Scores are relative to the hierarchy's estimate of the
+//! unoccluded light, so that they hold around the place: s_l(x) is proportional to the estimate at
+//! x.
 
-/// Most lights that a place knows by name.
+/// Most lights that are scored individually at a place.
 pub const BEST: usize = 8;
-/// Least share of the choices that is left to the hierarchy. It bounds by its inverse what a light
-/// costs that the scores think dark.
+/// Least share of the choices that is left to the hierarchy. Its inverse bounds the weight of a
+/// light that the scores underestimate.
 const LEAST_REST: f32 = 0.3;
-/// Looks that a light is taken to have been seen by whatever the others say.
+/// Number of samples with full visibility that every light is assumed to have beside its own.
 const DOUBT: f32 = 0.25;
 
-/// What a look at one of the lights tells of it from near a place.
+/// Visibility of one light from a point near a place, estimated by a shadow ray.
 #[derive(Clone, Copy, Debug)]
 pub struct Visibility {
-    /// The light, by its index in the scene; the hierarchy chose it.
+    /// Index of the light in the scene, as the hierarchy chose it.
     pub light: u32,
-    /// The part of its light that is not hidden or dimmed.
+    /// Transmittance, 0 to 1, from the light to the point.
     pub seen: f32,
-    /// The hierarchy's guess at its unhindered light, over the probability of choosing it.
+    /// The hierarchy's estimate of the unoccluded irradiance, over the probability of choosing the
+    /// light.
     pub guess: f32,
 }
 
 /// Scores of the lights around a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scores {
-    /// Lights with the part that is seen of them, the best first; 0 where there are no more.
+    /// Lights with their visibility, the brightest first; 0 where there are no more.
     best: [(u32, f32); BEST],
-    /// r.
+    /// The share r of the choices that is left to the hierarchy.
     rest: f32,
 }
 
@@ -39,41 +41,42 @@ pub struct Scores {
 pub struct LightProbabilities {
     /// Lights with s_l, which sum to 1 − r.
     best: [(u32, f32); BEST],
-    /// r.
+    /// The share r of the choices that is left to the hierarchy.
     rest: f32,
 }
 
-/// What several looks tell of one light.
+/// Mean of several visibility samples of one light.
 #[derive(Clone, Copy, Debug)]
 struct LightTally {
     light: u32,
-    /// Mean of what is seen of it.
+    /// Mean visibility of the light.
     seen: f32,
-    /// Its light, times the number of all looks.
+    /// Estimated irradiance of the light, times the number of all samples.
     found: f32,
-    looks: f32,
+    samples: f32,
 }
 
 impl Scores {
-    /// From looks that the hierarchy has chosen, in any order; `None` where none is known.
+    /// Scores from samples that the hierarchy has chosen, in any order; `None` where no light is
+    /// visible.
     ///
-    /// With S_l the share of light l in what is seen and h_l its share of the looks, those without
-    /// a name get theirs by r = Σ S_l / Σ h_l over them.
+    /// With S_l the share of light l in the visible light and h_l its share of the samples, lights
+    /// that are not scored individually share r = Σ S_l / Σ h_l over them.
     pub fn new(visibilities: &mut [Visibility]) -> Option<Self> {
         visibilities.sort_by_key(|visibility| visibility.light);
         let mut tallies: Vec<LightTally> =
             visibilities.chunk_by(|a, b| a.light == b.light).map(LightTally::new).collect();
         tallies.sort_by(|a, b| b.found.total_cmp(&a.found));
         let sums = |of: &[LightTally]| {
-            of.iter().fold((0.0, 0.0), |(found, looks), t| (found + t.found, looks + t.looks))
+            of.iter().fold((0.0, 0.0), |(found, samples), t| (found + t.found, samples + t.samples))
         };
-        let (found, looks) = sums(&tallies);
+        let (found, samples) = sums(&tallies);
         if !(found > 0.0 && found.is_finite()) {
             return None;
         }
         let (named, others) = tallies.split_at(BEST.min(tallies.len()));
-        let (found_of_others, looks_of_others) = sums(others);
-        let rest = (found_of_others / found) / (looks_of_others / looks).max(f32::MIN_POSITIVE);
+        let (found_of_others, samples_of_others) = sums(others);
+        let rest = (found_of_others / found) / (samples_of_others / samples).max(f32::MIN_POSITIVE);
         let rest = rest.clamp(LEAST_REST, 1.0);
         let mut best = [(0, 0.0); BEST];
         for (slot, tally) in best.iter_mut().zip(named) {
@@ -82,7 +85,8 @@ impl Scores {
         Some(Self { best, rest })
     }
 
-    /// The distribution at a receiver where `guess` tells what to expect of a light by name.
+    /// The distribution at a receiver where `guess` estimates the unoccluded irradiance of a scored
+    /// light.
     pub(super) fn at(&self, guess: impl Fn(u32) -> f32) -> LightProbabilities {
         let mut best = self.best;
         let mut total = 0.0;
@@ -100,18 +104,19 @@ impl Scores {
 }
 
 impl LightTally {
-    /// Of looks at one light, of which there is at least one. Few looks don't say that it is hidden
-    /// for good.
+    /// Mean of the samples of one light, of which there is at least one. Few samples don't prove
+    /// that a light is hidden everywhere.
     fn new(visibilities: &[Visibility]) -> Self {
-        let looks = visibilities.len() as f32;
+        let samples = visibilities.len() as f32;
         let sum = |of: fn(&Visibility) -> f32| visibilities.iter().map(of).sum::<f32>();
-        let seen = (sum(|g| g.seen) + DOUBT) / (looks + DOUBT);
-        Self { light: visibilities[0].light, seen, found: seen * sum(|g| g.guess), looks }
+        let seen = (sum(|g| g.seen) + DOUBT) / (samples + DOUBT);
+        Self { light: visibilities[0].light, seen, found: seen * sum(|g| g.guess), samples }
     }
 }
 
 impl LightProbabilities {
-    /// The light that `pick`, in [0, 1), chooses by name, or the pick that is left to the hierarchy.
+    /// The light that `pick`, in [0, 1), chooses by its score, or the pick that is left to the
+    /// hierarchy.
     pub(super) fn pick(&self, pick: f64) -> Result<u32, f64> {
         let mut left = pick;
         for &(light, share) in &self.best {

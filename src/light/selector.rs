@@ -1,4 +1,4 @@
-//! Choosing one light among many: suns by what they bring, the rest through the hierarchy.
+//! Choosing one light among many: suns by their irradiance, the rest through the hierarchy.
 
 use glam::Vec3A;
 
@@ -15,7 +15,7 @@ pub(super) struct Selector {
     /// The lights of the tree, in its order.
     placed: Vec<u32>,
     tree: LightTree,
-    /// Where each light of the scene is.
+    /// Location of each light of the scene in the hierarchy or among the suns.
     places: Vec<LeafPlace>,
 }
 
@@ -23,9 +23,9 @@ pub(super) struct Selector {
 #[derive(Clone, Copy, Debug)]
 struct DistantLight {
     light: u32,
-    /// Luminance of its irradiance.
+    /// Luminance of the sun's irradiance.
     importance: f32,
-    /// Unit, towards its middle.
+    /// Unit direction towards the middle of the disk.
     direction: Vec3A,
 }
 
@@ -69,7 +69,7 @@ impl Selector {
         self.suns.iter().map(|sun| sun.light)
     }
 
-    /// How many lights there are to choose from.
+    /// Number of lights to choose from.
     pub(super) fn len(&self) -> usize {
         self.suns.len() + self.placed.len()
     }
@@ -133,8 +133,8 @@ impl Selector {
         self.places.get(light as usize).copied().unwrap_or(LeafPlace::Nowhere)
     }
 
-    /// Rough irradiance of a light at the receiver, if nothing is in the way, and the unit
-    /// direction towards its middle; `None` where it brings nothing.
+    /// Rough irradiance of a light at the receiver, if unoccluded, and the unit direction towards
+    /// its middle; `None` where it cannot contribute.
     pub(super) fn guess(&self, light: u32, to: &Receiver) -> Option<(f32, Vec3A)> {
         match self.place(light) {
             LeafPlace::Sun(sun) => {
@@ -166,7 +166,7 @@ impl Selector {
         }
     }
 
-    /// The importance of all lights together.
+    /// Sum of the importances of all lights.
     fn total(&self, to: &Receiver) -> f32 {
         self.suns.iter().map(|sun| sun.importance).sum::<f32>() + self.tree.importance(to)
     }

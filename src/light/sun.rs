@@ -22,20 +22,20 @@ pub struct Sun {
 }
 
 impl Sun {
-    /// A sun whose light travels along `direction` and brings `irradiance` to a plane across it.
-    /// `angle` is the disk's diameter in degrees, 0 to 180; a `visible` disk can be seen.
+    /// A sun whose light travels along `direction` with `irradiance` on a plane across it. `angle`
+    /// is the disk's diameter in degrees, 0 to 180; a `visible` disk can be seen.
     pub fn new(direction: Vec3A, irradiance: Rgb, angle: f32, visible: bool) -> Self {
         let half = 0.5 * angle.to_radians();
         let one_minus_cos = 2.0 * (0.5 * half).sin().powi(2);
         Self { to_sun: -direction.normalize(), irradiance, one_minus_cos, visible }
     }
 
-    /// Unit direction towards its middle.
+    /// Unit direction towards the middle of the disk.
     pub fn direction(&self) -> Vec3A {
         self.to_sun
     }
 
-    /// Irradiance on a plane across its direction.
+    /// Irradiance on a plane across the sun's direction.
     pub fn irradiance(&self) -> Rgb {
         self.irradiance
     }
@@ -58,7 +58,7 @@ impl Sun {
         uniform_cone_pdf(self.one_minus_cos)
     }
 
-    /// Draws a direction towards it.
+    /// Draws a direction towards the sun's disk.
     pub fn sample(&self, u: Vec2) -> LightSample {
         let distance = f32::INFINITY;
         if !self.has_disk() {

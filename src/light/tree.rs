@@ -1,9 +1,10 @@
-//! A hierarchy over many lights that finds, for a point to be lit, a light by what it may bring:
-//! power, distance and facing (Conty Estevez and Kulla, *Importance Sampling of Many Lights with
-//! Adaptive Tree Splitting*, 2018).
+//! A light tree: a hierarchy over many lights that chooses one for a receiver by its estimated
+//! contribution, from power, distance and facing (Conty Estevez and Kulla, *Importance Sampling of
+//! Many Lights with Adaptive Tree Splitting*, 2018).
 //!
-//! At each node the descent chooses between two children by their importances. Where a light lies
-//! in the tree is kept with it as a trail of turns, so that its probability costs one descent too.
+//! At each node the descent chooses between two children by their importances. The path to each
+//! light is stored as a trail of left and right choices, so that its probability costs one descent
+//! too.
 
 mod build;
 mod cone;
@@ -23,11 +24,11 @@ impl LightTree {
         build::build(emitters)
     }
 
-    /// Rough irradiance at the receiver of all lights in it, which weighs it against lights outside
-    /// of it. Finite, and above zero wherever one of them can contribute.
+    /// Rough irradiance at the receiver of all lights in the tree, which weights the tree against
+    /// lights outside of it. Finite, and above zero wherever one of them can contribute.
     ///
-    /// A descent to the greatest importance, and all that it passes by: next to one of many lights
-    /// their common box says little.
+    /// Summed over a descent to the greatest importance and all nodes that it passes by: next to
+    /// one of many lights their common box is a poor estimate.
     pub fn importance(&self, to: &Receiver) -> f32 {
         let Some(mut node) = self.nodes.first() else { return 0.0 };
         let mut importance = node.importance(to);
@@ -48,7 +49,7 @@ impl LightTree {
         }
     }
 
-    /// Rough irradiance at the receiver of one emitter, if nothing is in the way; 0 where it cannot
+    /// Rough irradiance at the receiver of one emitter, if unoccluded; 0 where it cannot
     /// contribute.
     #[inline]
     pub fn importance_of(&self, index: u32, to: &Receiver) -> f32 {
@@ -68,9 +69,9 @@ impl LightTree {
         self.nodes.get(self.leaves[index as usize] as usize)
     }
 
-    /// An emitter and its probability. `None` where none can contribute, or where the descent ends
-    /// among some that cannot though their common box promised it. Near values of `pick`, in
-    /// [0, 1), lead to near emitters.
+    /// An emitter and its probability. `None` where no emitter can contribute, or where the descent
+    /// ends among emitters that cannot though their common box could. Near values of `pick`, in [0,
+    /// 1), lead to near emitters.
     pub fn sample(&self, to: &Receiver, mut pick: f64) -> Option<(u32, f32)> {
         let mut node = self.nodes.first()?;
         if let NodeKind::Leaf(emitter) = node.kind {
@@ -96,7 +97,7 @@ impl LightTree {
         }
     }
 
-    /// The probability with which [`LightTree::sample`] finds an emitter.
+    /// The probability with which [`LightTree::sample`] draws an emitter.
     pub fn probability(&self, index: u32, to: &Receiver) -> f32 {
         let Some(&Some(mut trail)) = self.trails.get(index as usize) else { return 0.0 };
         let mut node = &self.nodes[0];
@@ -130,7 +131,7 @@ impl LightTree {
     }
 }
 
-/// In single precision, still above zero.
+/// Rounds a probability to single precision, above zero where it was.
 fn rounded(probability: f64) -> f32 {
     (probability as f32).max(f32::MIN_POSITIVE)
 }

@@ -28,7 +28,7 @@ impl Aabb {
         Self { min: -half_size, max: half_size }
     }
 
-    /// Whether it holds no point.
+    /// Whether the box holds no point.
     pub fn is_empty(&self) -> bool {
         self.min.cmpgt(self.max).any()
     }

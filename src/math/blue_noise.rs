@@ -25,14 +25,14 @@ pub fn rank(pixel: UVec2) -> u32 {
     u32::from(RANKS[((pixel.y % SIDE) * SIDE + pixel.x % SIDE) as usize])
 }
 
-/// How far a point is felt, in pixels, where next to nothing is left of it.
+/// Radius in pixels beyond which a point's Gaussian is next to nothing.
 const REACH: i32 = 9;
-/// Width of the Gaussian that a point is felt by, in pixels (Ulichney's 1.5, and some more as the
-/// ranks are many).
+/// Standard deviation of a point's Gaussian, in pixels (Ulichney's 1.5, and some more as the ranks
+/// are many).
 const WIDTH: f64 = 1.9;
 
-/// Points on the tile and how crowded it is at each pixel, in whole numbers so that the tile is
-/// the same wherever it is made.
+/// Points on the tile and the sum of their Gaussians at each pixel, in whole numbers so that the
+/// tile is the same wherever it is made.
 #[derive(Clone)]
 struct Pattern {
     occupied: Vec<bool>,

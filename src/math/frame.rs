@@ -27,13 +27,13 @@ impl OrthonormalBasis {
         }
     }
 
-    /// Turns local coordinates into world ones.
+    /// Transforms local coordinates to the world.
     #[inline]
     pub fn world_from_local(&self, local: Vec3A) -> Vec3A {
         local.x * self.tangent + local.y * self.bitangent + local.z * self.normal
     }
 
-    /// Turns a world vector into local coordinates.
+    /// Transforms a world vector to local coordinates.
     #[inline]
     pub fn local_from_world(&self, world: Vec3A) -> Vec3A {
         Vec3A::new(world.dot(self.tangent), world.dot(self.bitangent), world.dot(self.normal))

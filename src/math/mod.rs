@@ -1,4 +1,4 @@
-//! Rays, boxes, frames, random numbers: what every other room stands on.
+//! Rays, boxes, frames and random numbers: the base of every other room.
 
 mod aabb;
 mod blue_noise;

@@ -5,9 +5,9 @@ use glam::Vec3A;
 /// A half line `origin + t * direction`, `t >= 0`, with a unit direction unless said otherwise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray {
-    /// Where it starts.
+    /// Origin of the ray.
     pub origin: Vec3A,
-    /// Where it goes.
+    /// Direction of the ray, a unit vector unless said otherwise.
     pub direction: Vec3A,
 }
 

@@ -17,8 +17,8 @@ pub const ACCUMULATORS: usize = 8;
 /// nothing left to gain.
 const STRATIFIED_VERTICES: u32 = 4;
 
-/// What a number is for. Slots that shape the same part of a path share a Sobol sequence; those of
-/// different rows are independent:
+/// Use of a random number. Slots that shape the same part of a path share a Sobol sequence; those
+/// of different rows are independent:
 ///
 /// | | | | |
 /// |---|---|---|---|
@@ -28,44 +28,46 @@ const STRATIFIED_VERTICES: u32 = 4;
 /// | `LightEmission` | `LightTransmittanceA` | `LightZ` | `LightTransmittanceB` |
 ///
 /// The first number of a row and the second make up the best pair. The camera has the slots
-/// `Pixel*`, every other vertex the slots `Turn*` in their place: both choose the ray that leaves.
+/// `Pixel*`, every other vertex the slots `Direction*` in their place: both choose the ray that
+/// leaves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Slot {
-    /// Where on the pixel a camera ray passes, from left to right; at vertex 0 only.
+    /// Horizontal position of a camera ray in its pixel, from left to right; at vertex 0 only.
     PixelX,
-    /// Where on the pixel a camera ray passes, from top to bottom; at vertex 0 only.
+    /// Vertical position of a camera ray in its pixel, from top to bottom; at vertex 0 only.
     PixelY,
-    /// Places of the emission walk along the ray that leaves the vertex.
+    /// Jitter of the emission walk's reads along the ray that leaves the vertex.
     Emission,
-    /// The estimate of the transmittance along that ray.
+    /// Jitter of the transmittance estimate along the ray that leaves the vertex.
     TransmittanceA,
-    /// The same, a second number.
+    /// Second jitter of the transmittance estimate along the ray that leaves the vertex.
     TransmittanceB,
-    /// The first flight of the scattering walk along that ray.
+    /// First distance of the scattering walk along the ray that leaves the vertex.
     Distance,
-    /// The first flight of the guided walk along that ray, where there are two.
+    /// First guided distance along the ray that leaves the vertex, where it has a guided and an
+    /// unguided flight.
     GuidedDistance,
-    /// Which light is looked at.
+    /// Choice of a light for next-event estimation.
     LightPick,
-    /// Which part of that light.
+    /// Choice of a part of that light, such as a cell of a volume.
     LightCell,
-    /// Where on or in the part.
+    /// First coordinate of the point on or in that part.
     LightX,
-    /// The same, a second number.
+    /// Second coordinate of the point on or in that part.
     LightY,
-    /// The same, a third number.
+    /// Third coordinate of the point in that part.
     LightZ,
-    /// Places of the emission walk along the ray to the light.
+    /// Jitter of the emission walk's reads along the shadow ray.
     LightEmission,
-    /// The estimate of the transmittance along the ray to the light.
+    /// Jitter of the transmittance estimate along the shadow ray.
     LightTransmittanceA,
-    /// The same, a second number.
+    /// Second jitter of the transmittance estimate along the shadow ray.
     LightTransmittanceB,
-    /// Which part of a phase function or material turns the path; not at vertex 0.
+    /// Choice of a lobe of the phase function or material to scatter by; not at vertex 0.
     DirectionPick,
-    /// The direction it turns to; not at vertex 0.
+    /// First coordinate of the scattered direction; not at vertex 0.
     DirectionX,
-    /// The same, a second number.
+    /// Second coordinate of the scattered direction; not at vertex 0.
     DirectionY,
 }
 
@@ -105,13 +107,13 @@ impl Slot {
 #[derive(Clone, Debug)]
 pub struct PathRng {
     random: Xoshiro128PlusPlus,
-    /// What the scrambling of the slots starts from: (seed, pixel, randomization).
+    /// Key of the scrambling of all slots: (seed, pixel, randomization).
     key: u64,
     /// Number of the sample among those of its randomization.
     index: u32,
-    /// The vertex slots are for.
+    /// Number of the vertex that the slots belong to.
     vertex: u32,
-    /// How many vertices have stratified slots, both branches counted.
+    /// Number of vertices with stratified slots, both branches counted.
     stratified_vertices: u32,
     /// The row that `shuffled` is for, by vertex; none yet where it is the largest number.
     shuffled_row: u32,
@@ -238,7 +240,7 @@ impl PathRng {
         }
     }
 
-    /// What scrambles a dimension of a row, or after the last dimension its order.
+    /// Key that scrambles a dimension of a row, or after the last dimension its order.
     #[inline]
     fn key_of(&self, row: u32, dimension: usize) -> u64 {
         // Odd multiples of 2⁶⁴ over the golden ratio never meet for different small factors.
@@ -263,7 +265,7 @@ fn unit(bits: u32) -> f32 {
     (bits >> 8) as f32 * SCALE
 }
 
-/// Where the tile of blue noise lies in a randomization: anywhere by the seed, and those of one
+/// Offset of the tile of blue noise in a randomization: random by the seed, and for those of one
 /// seed far from each other, so that no two of them ever agree.
 fn tile_offset(seed: u64, randomization: u32) -> UVec2 {
     let place = mix(!mix(seed)) as u32;
@@ -421,8 +423,8 @@ mod tests {
         sum / f64::sqrt(squares - sum * sum / n)
     }
 
-    /// Numbers of different slots, vertices, randomizations, pixels and seeds do not know of each
-    /// other. Some 200 comparisons, each with |z| < 5: a false alarm has probability 1e-4, and a
+    /// Numbers of different slots, vertices, randomizations, pixels and seeds are uncorrelated.
+    /// Some 200 comparisons, each with |z| < 5: a false alarm has probability 1e-4, and a
     /// correlation of 0.1 gives z around 13.
     #[test]
     fn numbers_for_different_purposes_are_uncorrelated() {
@@ -475,7 +477,7 @@ mod tests {
     }
 
     /// The camera ray's `Emission` over seeds: uniform, evenly spread in every randomization,
-    /// ignorant of other slots and randomizations.
+    /// independent of other slots and randomizations.
     #[test]
     fn the_number_on_the_tile_is_a_number_like_any_other() {
         let of = |slot, step| {

@@ -4,8 +4,8 @@
 //! The scrambling is a hash that lets every digit depend on the digits above it only (Laine and
 //! Karras 2011, *Stratified sampling for stochastic transparency*; Burley 2020, *Practical
 //! hash-based Owen scrambling*). It works on numbers whose bits are reversed, where "above" means
-//! "towards the low end", the way carries go. More than four dimensions come from several such
-//! sequences, each with its own scrambling and its own order of points.
+//! "towards the low end", the direction of carries. More than four dimensions come from several
+//! such sequences, each with its own scrambling and its own order of points.
 
 /// Dimensions of the sequence.
 pub const DIMENSIONS: usize = 4;

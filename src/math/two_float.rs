@@ -1,4 +1,4 @@
-//! A running sum kept as two floats, so that a million samples lose nothing that shows.
+//! A running sum kept as two floats, so that a million samples lose no visible precision.
 
 use bytemuck::{Pod, Zeroable};
 
@@ -16,8 +16,8 @@ pub struct TwoFloat {
 }
 
 impl TwoFloat {
-    /// Adds `x`: Knuth's two-sum for the exact rounding error, then Dekker's fast two-sum to bring
-    /// the pair back to normal form.
+    /// Adds `x`: Knuth's two-sum for the exact rounding error, then Dekker's fast two-sum to
+    /// normalize the pair.
     #[inline]
     pub fn add(&mut self, x: f32) {
         let sum = self.sum + x;

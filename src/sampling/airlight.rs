@@ -1,4 +1,5 @@
-//! Directions about that of a light, as dense as the glow of the medium around the light.
+//! Directions about the direction to a light, with a density that follows airlight: the glow of a
+//! medium around a light.
 
 use std::f32::consts::{PI, TAU};
 
@@ -21,13 +22,13 @@ pub struct Airlight {
     reach: f32,
 }
 
-/// The narrowest halo.
+/// Least half width of the density of θ, radians.
 const LEAST_SPREAD: f32 = 0.02;
 /// Least sine of the angle that densities are formed with.
 const LEAST_SINE: f32 = 1e-6;
 
 impl Airlight {
-    /// About the unit `axis` in a medium of mean cosine `g`.
+    /// The density about the unit `axis`, towards the light, in a medium of mean cosine `g`.
     pub fn new(axis: Vec3A, g: f32) -> Self {
         let spread = (1.0 - g.abs()).max(LEAST_SPREAD);
         Self { axis: OrthonormalBasis::around(axis), spread, reach: (PI / spread).atan() }

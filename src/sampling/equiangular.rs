@@ -1,5 +1,5 @@
-//! Distances along a ray that see a point under evenly spread angles, or under more of those by
-//! which light from there scatters forward.
+//! Equiangular sampling: distances along a ray with evenly spread angles to a point, or with more
+//! of the angles by which light from the point is scattered forward.
 
 use glam::Vec3A;
 
@@ -7,21 +7,21 @@ use crate::math::Ray;
 
 /// A density over the parameter of a ray for light from a point beside it (Kulla and Fajardo 2012).
 ///
-/// With b the point's distance from the ray and φ the angle by which its light turns into the ray's
-/// back direction, dt = (b²+x²)/b dφ takes the light's 1/d² away. For a medium that scatters
-/// forward, φ has density ∝ (a² + φ²)^(-3/2) with a = (1−g)/√g, which is Henyey–Greenstein's for
-/// small angles; otherwise it is uniform.
+/// With b the point's distance from the ray and φ the angle by which its light is scattered into
+/// the ray's back direction, dt = (b²+x²)/b dφ takes the light's 1/d² away. For a medium that
+/// scatters forward, φ has density ∝ (a² + φ²)^(-3/2) with a = (1−g)/√g, which is
+/// Henyey–Greenstein's for small angles; otherwise it is uniform.
 #[derive(Clone, Copy, Debug)]
 pub struct Equiangular {
     t0: f32,
     t1: f32,
-    /// Where the ray is nearest to the point.
+    /// Ray parameter of the place nearest to the point.
     nearest: f32,
-    /// Distance of the point there.
+    /// Distance b of the point from the ray.
     aside: f32,
-    /// a, infinite where φ is uniform.
+    /// The width a of the density of φ; infinite where φ is uniform.
     spread: f32,
-    /// Distribution function of φ at both ends.
+    /// Distribution function of φ at both ends of the range.
     low: f32,
     high: f32,
 }
@@ -32,8 +32,8 @@ const LEAST_ASIDE: f32 = 1e-4;
 const LEAST_COSINE: f32 = 0.05;
 
 impl Equiangular {
-    /// Between `t0` and `t1`, which may be infinite, of `ray` for light from `point` in a medium of
-    /// mean cosine `g`; `None` where there is no distance to draw.
+    /// The density between the parameters `t0` and `t1`, which may be infinite, of `ray` for light
+    /// from `point` in a medium of mean cosine `g`; `None` where there is no distance to draw.
     pub fn new(ray: &Ray, point: Vec3A, g: f32, t0: f32, t1: f32) -> Option<Self> {
         let nearest = (point - ray.origin).dot(ray.direction);
         let away = (point - ray.at(nearest)).length();
@@ -80,7 +80,7 @@ impl Equiangular {
         angle / (self.spread * self.spread + angle * angle).sqrt()
     }
 
-    /// The derivative of the distribution.
+    /// Density of φ: the derivative of its distribution function.
     fn slope(&self, angle: f32) -> f32 {
         if self.spread.is_infinite() {
             return 1.0;
@@ -98,7 +98,7 @@ mod tests {
     const RAY: Ray = Ray { origin: Vec3A::ZERO, direction: Vec3A::X };
 
     /// The share of samples below t is the integral of the density up to t, whatever the phase
-    /// function, for points beside, before and behind the stretch and next to the ray.
+    /// function, for points beside, before and behind the range and next to the ray.
     #[test]
     fn samples_follow_the_density() {
         for g in [-0.5, 0.0, 0.5, 0.9] {
@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn stretches_without_end_and_points_on_the_ray_have_finite_samples() {
+    fn ranges_without_end_and_points_on_the_ray_have_finite_samples() {
         for point in [Vec3A::new(3.0, 0.0, 0.0), Vec3A::new(3.0, 1.0, 0.0), Vec3A::ZERO] {
             for g in [0.0, 0.8] {
                 let Some(all) = Equiangular::new(&RAY, point, g, 0.0, f32::INFINITY) else {

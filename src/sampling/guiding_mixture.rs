@@ -1,4 +1,5 @@
-//! Several kinds of directions that are worth more than chance gives them.
+//! Mixture of guided directions: airlight and caustics, to be drawn beside those of BSDF or phase
+//! sampling.
 
 use glam::{Vec2, Vec3A};
 use smallvec::SmallVec;
@@ -6,27 +7,27 @@ use smallvec::SmallVec;
 use super::airlight::Airlight;
 use super::von_mises_fisher::VonMisesFisher;
 
-/// Kinds that need no memory of their own.
+/// Lobes stored without an allocation.
 const FEW: usize = 5;
 
-/// One kind of directions.
+/// A lobe of guided directions.
 #[derive(Clone, Copy, Debug)]
 pub enum GuidingLobe {
-    /// The glow about a light.
+    /// Airlight around a light.
     Airlight(Airlight),
-    /// A bundle of light.
+    /// A caustic.
     Caustic(VonMisesFisher),
 }
 
-/// Kinds of directions, each with the share of all directions that it is drawn with. What the
-/// shares leave of one is drawn otherwise.
+/// Lobes of directions, each with the share of all directions that it is drawn with. The rest, one
+/// minus the sum of the shares, is left to BSDF or phase sampling.
 #[derive(Clone, Debug, Default)]
 pub struct GuidingMixture {
     lobes: SmallVec<[(f32, GuidingLobe); FEW]>,
 }
 
 impl GuidingMixture {
-    /// Adds a kind with a share of all directions.
+    /// Adds a lobe with a share, 0 to 1, of all directions.
     pub fn add(&mut self, share: f32, lobe: GuidingLobe) {
         if share > 0.0 {
             self.lobes.push((share, lobe));
@@ -38,8 +39,8 @@ impl GuidingMixture {
         self.lobes.iter().map(|(share, _)| share).sum()
     }
 
-    /// A unit direction of the kind that `pick`, in [0, share), chooses, from `u` in [0, 1)²;
-    /// `None` only where there is no kind.
+    /// A unit direction of the lobe that `pick`, in [0, share), chooses, from `u` in [0, 1)²;
+    /// `None` only without lobes.
     pub fn sample(&self, pick: f32, u: Vec2) -> Option<Vec3A> {
         let mut left = pick;
         let chosen = self.lobes.iter().find(|(share, _)| {

@@ -1,9 +1,9 @@
 //! Multiple importance sampling (Veach 1997, chapter 9): the only place that makes weights.
 
 /// Weight of a sample drawn with density `pdf` that `other_pdf` could have drawn as well, one
-/// sample from each: the balance heuristic. Both in the same measure.
+/// sample from each: the balance heuristic. Both densities are in the same measure.
 ///
-/// 1 where the other strategy cannot draw the sample, 0 where `pdf` is 0.
+/// The weight is 1 where the other strategy cannot draw the sample, 0 where `pdf` is 0.
 #[inline]
 pub fn balance(pdf: f32, other_pdf: f32) -> f32 {
     if other_pdf <= 0.0 {
@@ -16,11 +16,11 @@ pub fn balance(pdf: f32, other_pdf: f32) -> f32 {
     }
 }
 
-/// What a sample whose weight is over the first of `pdfs` is multiplied by, where each strategy is
-/// drawn from so many times on average as `counts` say: its density over their mixture, the
-/// balance heuristic. All in the same measure.
+/// Balance heuristic for several strategies with `counts` samples each on average, as a factor of a
+/// weight that is over the first of `pdfs`: that density over the mixture of all. All densities in
+/// the same measure.
 ///
-/// 0 where the first density is 0.
+/// The factor is 0 where the first density is 0.
 #[inline]
 pub fn mixture(counts: [f32; 2], pdfs: [f32; 2]) -> f32 {
     if pdfs[0] <= 0.0 { 0.0 } else { 1.0 / (counts[0] + counts[1] * (pdfs[1] / pdfs[0])) }

@@ -1,4 +1,4 @@
-//! Directions spread about an axis as errors on a sphere are (von Mises and Fisher).
+//! The von Mises-Fisher distribution of directions about an axis.
 
 use std::f32::consts::TAU;
 
@@ -15,8 +15,8 @@ pub struct VonMisesFisher {
 }
 
 impl VonMisesFisher {
-    /// About the unit `axis`, with `concentration` κ > 0: the mean of 1 − cos θ is about 1/κ where
-    /// that is small.
+    /// The density about the unit `axis`, with `concentration` κ > 0: the mean of 1 − cos θ is
+    /// about 1/κ where that is small.
     pub fn new(axis: Vec3A, concentration: f32) -> Self {
         Self { axis: OrthonormalBasis::around(axis), concentration }
     }

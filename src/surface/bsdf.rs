@@ -9,7 +9,7 @@ use crate::{
     sampling::warp::{cosine_hemisphere, cosine_hemisphere_pdf, uniform_disk},
 };
 
-/// How a surface reflects.
+/// Material of a surface: its reflection.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Material {
     /// Lambert's law.
@@ -25,11 +25,12 @@ pub enum Material {
         /// The constant Fresnel factor, 0 to 1.
         reflectance: Rgb,
     },
-    /// Reflects nothing.
+    /// No reflection.
     Black,
 }
 
-/// A material at a point, turned to the side it is seen from. Directions point away from it.
+/// The BSDF of a material at a point, oriented to the side it is seen from. Directions point away
+/// from the point.
 #[derive(Clone, Copy, Debug)]
 pub struct Bsdf {
     material: Material,
@@ -39,7 +40,7 @@ pub struct Bsdf {
 }
 
 impl Bsdf {
-    /// The material seen along the unit `outgoing` (away from the surface); `normal` may be of
+    /// The BSDF for the unit direction `outgoing` (away from the surface); `normal` may be of
     /// either side.
     pub fn new(material: Material, normal: Vec3A, outgoing: Vec3A) -> Self {
         let facing = if normal.dot(outgoing) < 0.0 { -normal } else { normal };
@@ -47,12 +48,12 @@ impl Bsdf {
         Self { material, frame, outgoing: frame.local_from_world(outgoing) }
     }
 
-    /// The normal on the side it is seen from.
+    /// Unit normal on the side of the outgoing direction.
     pub fn normal(&self) -> Vec3A {
         self.frame.normal
     }
 
-    /// Whether it is a metal.
+    /// Whether the material is a metal.
     pub fn is_metal(&self) -> bool {
         matches!(self.material, Material::Conductor { .. })
     }

@@ -1,23 +1,24 @@
-//! Points of surfaces: where a ray meets one, and where a direction towards one was drawn.
+//! Points of surfaces: intersections with rays, and samples of lights.
 
 use glam::Vec3A;
 
 /// Rounding of a hit point relative to the numbers it was computed from, with room to spare.
 const RELATIVE_ERROR: f32 = 64.0 * f32::EPSILON;
 
-/// Where a ray meets a shape.
+/// Intersection of a ray with a shape.
 #[derive(Clone, Copy, Debug)]
 pub struct Hit {
     /// Ray parameter.
     pub t: f32,
-    /// The point.
+    /// Position of the intersection.
     pub point: Vec3A,
     /// Unit normal of the shape, on no particular side of the ray.
     pub normal: Vec3A,
 }
 
 impl Hit {
-    /// How far from the point a ray must start so that it doesn't meet the same place again.
+    /// Distance from the point at which a ray must start so that it doesn't meet the same place
+    /// again.
     pub fn offset(&self) -> f32 {
         RELATIVE_ERROR * (self.t + self.point.abs().max_element() + 1e-3)
     }
@@ -26,11 +27,11 @@ impl Hit {
 /// A point drawn on a light.
 #[derive(Clone, Copy, Debug)]
 pub struct SurfacePoint {
-    /// Unit direction towards it.
+    /// Unit direction towards the point.
     pub direction: Vec3A,
-    /// Distance to it.
+    /// Distance to the point.
     pub distance: f32,
-    /// Density over solid angle of having drawn this direction.
+    /// Density over solid angle of the direction, 1/sr.
     pub pdf_solid_angle: f32,
 }
 

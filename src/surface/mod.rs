@@ -14,41 +14,41 @@ pub use sphere::Sphere;
 
 use crate::math::{Ray, Rgb};
 
-/// A shape with its material and what it radiates.
+/// A shape with its material and emission.
 #[derive(Clone, Debug)]
 pub struct Surface {
-    /// Its shape.
+    /// Shape in world space.
     pub shape: Shape,
-    /// How it reflects.
+    /// Reflection of the surface.
     pub material: Material,
-    /// Radiance it emits from both sides.
+    /// Emitted radiance, the same on both sides.
     pub emission: Rgb,
 }
 
 impl Surface {
-    /// Whether it emits at all.
+    /// Whether the surface emits.
     pub fn emits(&self) -> bool {
         self.emission.max_element() > 0.0
     }
 
-    /// Whether paths go on from it.
+    /// Whether the surface reflects, so that paths go on from it.
     pub fn reflects(&self) -> bool {
         self.material != Material::Black
     }
 }
 
-/// Where a ray meets the surfaces first.
+/// The nearest intersection of a ray with the surfaces.
 #[derive(Clone, Copy, Debug)]
 pub struct Intersection<'s> {
     /// Index of the surface.
     pub index: usize,
     /// The surface itself.
     pub surface: &'s Surface,
-    /// Ray parameter and geometry of the meeting.
+    /// Ray parameter and geometry of the intersection.
     pub hit: Hit,
 }
 
-/// The nearest surface along `ray`.
+/// The nearest intersection of `ray` with the surfaces.
 pub fn intersect<'s>(surfaces: &'s [Surface], ray: &Ray) -> Option<Intersection<'s>> {
     let mut nearest: Option<Intersection<'s>> = None;
     for (index, surface) in surfaces.iter().enumerate() {
@@ -60,7 +60,7 @@ pub fn intersect<'s>(surfaces: &'s [Surface], ray: &Ray) -> Option<Intersection<
     nearest
 }
 
-/// Whether anything lies on `ray` before parameter `t_max`.
+/// Whether any surface occludes `ray` before parameter `t_max`.
 pub fn occluded(surfaces: &[Surface], ray: &Ray, t_max: f32) -> bool {
     surfaces.iter().any(|surface| surface.shape.intersect(ray, t_max).is_some())
 }

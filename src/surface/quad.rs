@@ -15,7 +15,7 @@ pub struct Quad {
     /// Second half edge.
     pub edge_v: Vec3A,
     normal: Vec3A,
-    /// Maps an offset from the center to a and b.
+    /// Dual vectors: their dot products with an offset from the center are a and b.
     dual_u: Vec3A,
     dual_v: Vec3A,
 }
@@ -29,18 +29,18 @@ impl Quad {
         Self { center, edge_u, edge_v, normal: cross / squared.sqrt(), dual_u, dual_v }
     }
 
-    /// Its area, of one side.
+    /// Area of one side.
     pub fn area(&self) -> f32 {
         4.0 * self.edge_u.cross(self.edge_v).length()
     }
 
-    /// A box around it.
+    /// Bounding box of the parallelogram.
     pub fn bounds(&self) -> Aabb {
         let half = self.edge_u.abs() + self.edge_v.abs();
         Aabb::new(self.center - half, self.center + half)
     }
 
-    /// The meeting with `ray` in (0, t_max).
+    /// The intersection with `ray` in (0, t_max).
     pub fn intersect(&self, ray: &Ray, t_max: f32) -> Option<Hit> {
         let t = (self.center - ray.origin).dot(self.normal) / ray.direction.dot(self.normal);
         if !(t > 0.0 && t < t_max) {
@@ -52,7 +52,7 @@ impl Quad {
         inside.then_some(Hit { t, point, normal: self.normal })
     }
 
-    /// A point uniform over the area, and its normal, from `u` in [0, 1)².
+    /// A point uniform over the area and the unit normal, from `u` in [0, 1)².
     pub fn point(&self, u: Vec2) -> (Vec3A, Vec3A) {
         let [a, b] = [2.0 * u.x - 1.0, 2.0 * u.y - 1.0];
         (self.center + a * self.edge_u + b * self.edge_v, self.normal)

@@ -15,9 +15,9 @@ use crate::{
 pub enum Shape {
     /// An infinite plane.
     Plane {
-        /// A point of it.
+        /// A point of the plane.
         point: Vec3A,
-        /// Its unit normal.
+        /// Unit normal of the plane.
         normal: Vec3A,
     },
     /// A parallelogram.
@@ -52,7 +52,8 @@ impl Shape {
         Self::Box(Box::new(std::array::from_fn(face)))
     }
 
-    /// The first meeting in (0, t_max). A ray that starts on the shape must be offset first.
+    /// The first intersection with `ray` in (0, t_max). A ray that starts on the shape must be
+    /// offset first.
     pub fn intersect(&self, ray: &Ray, t_max: f32) -> Option<Hit> {
         match self {
             Self::Plane { point, normal } => {
@@ -78,7 +79,7 @@ impl Shape {
         }
     }
 
-    /// A box around it; `None` where it is infinite.
+    /// Bounding box of the shape; `None` where it is infinite.
     pub fn bounds(&self) -> Option<Aabb> {
         match self {
             Self::Plane { .. } => None,
@@ -93,7 +94,8 @@ impl Shape {
         }
     }
 
-    /// A point uniform over its area, and the unit normal there. `None` where it is infinite.
+    /// A point uniform over the shape's area, and the unit normal there. `None` for infinite
+    /// shapes.
     pub fn point(&self, pick: f32, u: Vec2) -> Option<(Vec3A, Vec3A)> {
         match self {
             Self::Plane { .. } => None,

@@ -25,7 +25,7 @@ impl Sphere {
         4.0 * PI * self.radius * self.radius
     }
 
-    /// The first meeting with `ray` in (0, t_max).
+    /// The first intersection with `ray` in (0, t_max).
     pub fn intersect(&self, ray: &Ray, t_max: f32) -> Option<Hit> {
         // From the nearest point of the line, which keeps its digits for spheres far away.
         let middle = (self.center - ray.origin).dot(ray.direction);

@@ -35,7 +35,7 @@ impl Camera {
         Ray::new(self.position, (self.forward + across).normalize())
     }
 
-    /// Where it is.
+    /// Position of the pinhole in the world.
     pub fn position(&self) -> Vec3A {
         self.position
     }
@@ -47,7 +47,7 @@ impl Camera {
     }
 
     /// The place on a film of `size` pixels, row 0 on top, of a point in front of the camera given
-    /// in its view; the way back from [`Camera::ray`].
+    /// in its view; the inverse of [`Camera::ray`].
     pub fn film_from_view(&self, size: UVec2, view: Vec3A) -> Vec2 {
         let size = size.as_vec2();
         let scale = self.pixels_per_length(size.x, view.z);

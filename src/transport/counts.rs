@@ -1,14 +1,14 @@
-//! How often: the one place that decides the expected number of samples of each technique. It is
-//! asked at a vertex, before any direction is drawn.
+//! Expected number of samples of each technique at a vertex, decided here and nowhere else, before
+//! any direction is drawn.
 //!
 //! | technique | rule |
 //! |---|---|
-//! | guided flights of a camera ray | in proportion to the light scattered into it, times what pays |
+//! | guided flights of a camera ray | in proportion to the radiance scattered into it, times the pilot's share |
 //! | light samples (next-event estimation) | one |
-//! | going on, near the camera inside of a medium | the weight window |
-//! | going on, elsewhere | Russian roulette on the throughput |
+//! | path continuation, near the camera inside of a medium | the weight window |
+//! | path continuation, elsewhere | Russian roulette on the throughput |
 //!
-//! Unbiased whatever the numbers: splitting and roulette make up for them by their factors, guided
+//! Unbiased whatever the numbers: splitting and roulette compensate by their factors, guided
 //! flights by their number in the balance heuristic.
 
 use super::context::PathContext;
@@ -21,26 +21,27 @@ use crate::sampling::mis;
 
 /// Scattering events and reflections before roulette may end a path.
 const ROULETTE_AFTER: u32 = 3;
-/// Throughput below which it does. Paths that may yet come to light are not worth less for being
-/// dim: at 1 the noise of dense smoke costs a third more time, that of lights inside of it several
-/// times as much.
+/// Throughput below which roulette may end a path. Paths that may yet reach a light are not worth
+/// less for being dim: at 1 the noise of dense smoke costs a third more time, that of lights inside
+/// of it several times as much.
 const ROULETTE_BELOW: f32 = 0.1;
-/// Vertices up to which the weight window is asked: the spread that guides bring is behind by then,
-/// and to look up a probe at each of a thousand vertices costs more than the walk.
+/// Vertices up to which the weight window decides: beyond them it has made up for the spread of
+/// weights that guiding brings, and a probe lookup at each of a thousand vertices costs more than
+/// the walk.
 const WEIGHED_VERTICES: u32 = 8;
 /// Most guided flights of a ray from the camera, on average.
 const MOST_FLIGHTS: f32 = 16.0;
-/// Relative variance of what an unguided flight finds from which on guided ones pay.
+/// Relative variance of an unguided flight's contribution from which on guided flights pay.
 const MUCH_MISSED: f32 = 1.0;
 
-/// What a path has come to where it is asked how often it goes on.
+/// State of a path where the number of its continuations is decided.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Standing {
     /// The throughput that arrives at the vertex.
     pub(super) throughput: Rgb,
     /// Scattering events and reflections before the vertex.
     pub(super) scatters: u32,
-    /// Contribution that a flight of the camera ray is expected to make; 0 where that is not known.
+    /// Expected contribution of one flight of the camera ray; 0 where it is unknown.
     pub(super) expected: f32,
     /// Splits whose branches are being followed.
     pub(super) nested: u32,
@@ -49,7 +50,7 @@ pub(super) struct Standing {
 /// The number of samples of each technique at one vertex.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Counts {
-    /// Samples of lights.
+    /// Light samples for next-event estimation.
     pub(super) light_samples: u32,
     /// The path's value relative to `expected` and its brightness relative to one worth keeping,
     /// where the weight window decides.
@@ -109,21 +110,23 @@ impl Counts {
     }
 }
 
-/// How the flights of a camera ray share what both kinds can bring, scattering.
+/// Allocation of scattering along a camera ray to guided and unguided flights.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Allocation {
-    /// Guided flights on average.
+    /// Expected number of guided flights.
     pub(super) flights: f32,
-    /// Whether they bring all of it; else both kinds do, by MIS.
+    /// Whether guided flights alone gather the scattered light; otherwise guided and unguided ones
+    /// do, by MIS.
     pub(super) alone: bool,
 }
 
 impl Allocation {
-    /// How many guided flights pay, where the guides are those of `distance_pdf`. The noise of a pixel is
-    /// about in proportion to its light, so that the picture's falls fastest for the same effort
-    /// where each gets flights in that proportion; fewer where an unguided one finds all the light
-    /// as well, as in a cloud, or where the noise is that of surfaces. But each ray gets one at least,
-    /// or its share of one, as it does from probes alone: what is rarely guided has rare bright paths.
+    /// Number of guided flights under the guides of `distance_pdf`. The noise of a pixel is about
+    /// in proportion to its light, so that the picture's falls fastest for the same cost where each
+    /// gets flights in that proportion; fewer where an unguided flight gathers all the light as
+    /// well, as in a cloud, or where the noise is that of surfaces. But each ray gets one at least,
+    /// or its share of one, as it does from probes alone: rays that are rarely guided have rare
+    /// bright paths.
     pub(super) fn new(
         strategy: &Strategy,
         distance_pdf: Option<&DistancePdf>,

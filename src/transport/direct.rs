@@ -1,10 +1,10 @@
-//! Next-event estimation, and the radiance a ray finds with its share of the MIS.
+//! Next-event estimation, and the MIS-weighted radiance that scattered rays gather from lights.
 //!
-//! What both a look at a light and a scattered ray can find is shared by the balance heuristic.
-//! The weight multiplies the radiance found, never the path's throughput. Environment, emitters
-//! and suns are shared light by light. Emissive volumes share one density, Σ q_v p_v over all of
-//! them along the line: that is how often any look at any of them goes there, so that a look
-//! gathers the emission of all, and where they overlap nothing needs to be kept apart.
+//! Light that both light samples and scattered rays can gather is shared by the balance heuristic.
+//! The weight multiplies the radiance, never the path's throughput. Environment, emitters and suns
+//! are shared light by light. Emissive volumes share one density, Σ q_v p_v over all volumes along
+//! the line: the density with which light samples of any volume choose that direction. A shadow ray
+//! therefore gathers the emission of all volumes, and overlaps need no special case.
 
 use glam::Vec3A;
 
@@ -30,15 +30,15 @@ const SHORT_OF_LIGHT: f32 = 1.0 - 1e-4;
 /// The vertex a ray left from and the density over solid angle it was drawn with there.
 #[derive(Clone, Copy, Debug)]
 pub struct PrevVertex {
-    /// Where looks at lights would have gone from.
+    /// Receiver that light samples at the vertex are drawn for.
     pub from: Receiver,
-    /// How they would have been chosen.
+    /// Choice among the lights for these samples.
     pub choice: LightChoice,
-    /// Density of the direction it took.
+    /// Density over solid angle of the direction that the path took, 1/sr.
     pub pdf_solid_angle: f32,
 }
 
-/// Which lights take part, by the toggles, and how one is chosen where no probes have a say.
+/// Choice among the lights that the strategy asks for, where no probe scores them.
 pub fn choice(strategy: &Strategy) -> LightChoice {
     let by = match strategy.advanced.light_selection {
         LightSelection::Hierarchy | LightSelection::Probes => By::Hierarchy,
@@ -54,23 +54,23 @@ struct LightDirection<'a> {
     choice: &'a LightChoice,
     /// The light's index in the scene, and the probability of choosing it.
     light: (u32, f32),
-    /// Unit direction towards it.
+    /// Unit direction towards the light.
     direction: Vec3A,
     at: LightTarget,
 }
 
-/// What is looked at.
+/// Target of a light sample.
 #[derive(Clone, Copy, Debug)]
 enum LightTarget {
-    /// A light with a place of its own.
+    /// A light other than an emissive volume.
     Solid { light: LightSample },
     /// A point of an emissive volume.
     Volume { point: Vec3A },
 }
 
 impl<'a> LightDirection<'a> {
-    /// Chooses a light by `pick`, in [0, 1), and draws a direction towards it; `None` where there
-    /// is nothing to look at.
+    /// Chooses a light by `pick`, in [0, 1), and draws a direction towards it; `None` where no
+    /// light can contribute.
     fn new(
         scene: &Scene,
         from: &'a Receiver,
@@ -109,7 +109,7 @@ impl<'a> LightDirection<'a> {
         }
     }
 
-    /// Whether scattered rays meet what is looked at as well, so that MIS must share it.
+    /// Whether scattered rays can reach the sampled light as well, so that MIS must weight it.
     fn can_be_met(&self) -> bool {
         match &self.at {
             LightTarget::Solid { light } => light.can_be_met,
@@ -117,7 +117,7 @@ impl<'a> LightDirection<'a> {
         }
     }
 
-    /// The point that is looked at; `None` for the sun, which is nowhere.
+    /// Sampled point of the light; `None` for the sun, which is infinitely far away.
     fn point(&self) -> Option<Vec3A> {
         match &self.at {
             LightTarget::Solid { light } if light.distance.is_finite() => {
@@ -132,8 +132,8 @@ impl<'a> LightDirection<'a> {
         Ray::new(self.from.position, self.direction)
     }
 
-    /// The radiance that comes from there over the density of looking there, which is `pdf`, and
-    /// the collisions of the walk towards it. `emission_estimator` looks at volumes.
+    /// Radiance from the sampled direction over its density `pdf`, and the number of collisions of
+    /// the shadow ray. `emission_estimator` gathers the emission of volumes.
     fn radiance_over_pdf(
         &self,
         scene: &Scene,
@@ -147,7 +147,7 @@ impl<'a> LightDirection<'a> {
                 let (radiance, collisions) = radiance_of_solid(scene, &ray, light, rng);
                 (radiance / pdf, collisions)
             }
-            LightTarget::Volume { point } if looks_at_points(scene) => {
+            LightTarget::Volume { point } if samples_points(scene) => {
                 self.emission_at_point(scene, (*point - ray.origin).length(), rng)
             }
             LightTarget::Volume { .. } => {
@@ -160,9 +160,9 @@ impl<'a> LightDirection<'a> {
         }
     }
 
-    /// The emission at one point of the ray through the medium before it, over the density with
-    /// which looks at volumes end there (Villemin and Hery 2013): Σ q_v p_v over volume, times the
-    /// squared distance.
+    /// Emission at one point of the ray, attenuated by the medium before it, over the density with
+    /// which light samples of volumes choose that point (Villemin and Hery 2013): Σ q_v p_v over
+    /// volume, times the squared distance.
     fn emission_at_point(&self, scene: &Scene, distance: f32, rng: &mut PathRng) -> (Rgb, u32) {
         let ray = self.ray();
         if occluded(&scene.surfaces, &ray, distance) {
@@ -185,18 +185,18 @@ impl<'a> LightDirection<'a> {
     }
 }
 
-/// What a look at the lights brings.
+/// Contribution of one light sample (next-event estimation).
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NeeSample {
-    /// Light that a sampled light sends to the vertex and on along the path.
+    /// Radiance of the sampled light at the vertex times the vertex's value and the MIS weight.
     pub light: Rgb,
-    /// The point of the light that was looked at, if it is somewhere.
+    /// Sampled point of the light; `None` for the sun and where nothing was sampled.
     pub point: Option<Vec3A>,
-    /// Collisions of the walk towards it.
+    /// Tentative collisions along the shadow ray.
     pub collisions: u32,
 }
 
-/// Looks from `vertex` at one of the lights. `emission_estimator` looks at volumes.
+/// Draws one light sample at `vertex`. `emission_estimator` gathers the emission of volumes.
 pub fn sample_lights(
     scene: &Scene,
     emission_estimator: &EmissionEstimator,
@@ -220,12 +220,12 @@ pub fn sample_lights(
     }
     let weight =
         if light_direction.can_be_met() { mis::balance(light_pdf, vertex_pdf) } else { 1.0 };
-    let (found, collisions) =
+    let (radiance, collisions) =
         light_direction.radiance_over_pdf(scene, emission_estimator, light_pdf, rng);
-    NeeSample { light: value * weight * found, collisions, ..unseen }
+    NeeSample { light: value * weight * radiance, collisions, ..unseen }
 }
 
-/// A point of a light, chosen as a look from a receiver would; `None` where that is nowhere.
+/// A point of a light, drawn as a light sample at a receiver would be; `None` for the sun.
 pub fn point_of_light(
     scene: &Scene,
     from: &Receiver,
@@ -236,21 +236,21 @@ pub fn point_of_light(
     LightDirection::new(scene, from, choice, pick, rng)?.point()
 }
 
-/// What a glance finds.
+/// Estimate of the radiance that one light sends to a receiver.
 #[derive(Clone, Copy, Debug)]
 pub struct LightEstimate {
     /// The light's index in the scene.
     pub light: u32,
-    /// Unit direction towards it.
+    /// Unit direction towards the light.
     pub direction: Vec3A,
-    /// Distance to it; infinite for the sun.
+    /// Distance to the light; infinite for the sun.
     pub distance: f32,
-    /// Its radiance over the density of the look.
+    /// Radiance over the density of the sample.
     pub radiance: Rgb,
 }
 
-/// An estimate of the light that arrives at a receiver, by one look at one of the lights, whatever
-/// probes may say. Lights are all that is found: not the environment, not what has scattered.
+/// Estimates the radiance that arrives at a receiver from lights, by one light sample and without
+/// scores of probes. Excludes the environment and scattered light.
 pub fn estimate_light(
     scene: &Scene,
     emission_estimator: &EmissionEstimator,
@@ -271,8 +271,8 @@ pub fn estimate_light(
     })
 }
 
-/// How much of the light that `pick`, in [0, 1), chooses by the hierarchy gets to a receiver: the
-/// transmittance from a point of it.
+/// Visibility of the light that `pick`, in [0, 1), chooses by the hierarchy: the transmittance to a
+/// receiver from a point of it.
 pub fn visibility(
     scene: &Scene,
     from: &Receiver,
@@ -289,7 +289,8 @@ pub fn visibility(
     Some(Visibility { light, seen, guess })
 }
 
-/// What a light with a place of its own sends along `ray`.
+/// Radiance along `ray` of a sampled light other than an emissive volume, and the collisions on the
+/// way.
 fn radiance_of_solid(
     scene: &Scene,
     ray: &Ray,
@@ -300,7 +301,7 @@ fn radiance_of_solid(
     (light.radiance * transmittance, collisions)
 }
 
-/// An estimate of the transmittance to a light at a distance; 0 behind surfaces.
+/// Estimates the transmittance over a distance towards a light; 0 behind surfaces.
 fn transmittance_to(scene: &Scene, ray: &Ray, distance: f32, rng: &mut PathRng) -> (Rgb, u32) {
     if occluded(&scene.surfaces, ray, SHORT_OF_LIGHT * distance) {
         return (Rgb::ZERO, 0);
@@ -308,7 +309,7 @@ fn transmittance_to(scene: &Scene, ray: &Ray, distance: f32, rng: &mut PathRng) 
     transmittance(scene, scene.world.along(*ray, distance), rng)
 }
 
-/// Transmittance on the way to a light, and the steps it took.
+/// Transmittance along a shadow ray, and the number of its steps.
 fn transmittance(scene: &Scene, medium: MediumRay<'_>, rng: &mut PathRng) -> (Rgb, u32) {
     match scene.strategy.integrator {
         Integrator::Path => {
@@ -318,15 +319,16 @@ fn transmittance(scene: &Scene, medium: MediumRay<'_>, rng: &mut PathRng) -> (Rg
     }
 }
 
-/// Whether looks at volumes take one point of them. Points are drawn inside of the lights only.
-/// Glow beyond them, which lines of sight bring as well, shares their weights, so that it takes
-/// the line.
-fn looks_at_points(scene: &Scene) -> bool {
+/// Whether light samples of volumes evaluate one point. Points are drawn inside of the lights only.
+/// Emission beyond them, which shadow rays gather as well, shares their weights, so that it takes
+/// the whole line.
+fn samples_points(scene: &Scene) -> bool {
     scene.strategy.advanced.nee_evaluation == NeeEvaluation::Point
         && !scene.world.emits_beyond_lights()
 }
 
-/// Density over solid angle with which a look at some emissive volume goes along `ray`.
+/// Density over solid angle with which light samples of emissive volumes choose the direction of
+/// `ray`.
 fn pdf_of_volumes(scene: &Scene, ray: &Ray, from: &Receiver, choice: &LightChoice) -> f32 {
     let mut sum = 0.0;
     scene.world.emissive_along(ray, |instance, pdf| {
@@ -337,8 +339,8 @@ fn pdf_of_volumes(scene: &Scene, ray: &Ray, from: &Receiver, choice: &LightChoic
     sum
 }
 
-/// The MIS weight of the volume emission found along a ray that scattering sent; 1 for camera rays
-/// (no departure), where nothing else could have found it.
+/// MIS weight of the volume emission gathered along a scattered ray; 1 for camera rays (no previous
+/// vertex), where no other technique samples it.
 pub fn weight_of_emission(scene: &Scene, ray: &Ray, prev_vertex: Option<&PrevVertex>) -> f32 {
     match prev_vertex {
         Some(prev_vertex) if scene.strategy.nee => {
@@ -350,8 +352,8 @@ pub fn weight_of_emission(scene: &Scene, ray: &Ray, prev_vertex: Option<&PrevVer
 }
 
 /// Radiance that arrives at the start of `ray` from the surface it ends on or the environment
-/// behind everything, the medium in between apart, weighted by what light samples at its departure
-/// find of the same.
+/// behind everything, the medium in between apart, MIS-weighted against light samples at the
+/// previous vertex.
 pub fn at_the_end(
     scene: &Scene,
     ray: &Ray,

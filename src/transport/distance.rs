@@ -1,13 +1,12 @@
-//! How far a ray goes before it scatters: by null-collision tracking, by what guides it to where
-//! light is, or by both, shared by MIS.
+//! Distance along a ray to its next scattering event: by null-collision tracking, by guiding
+//! towards light, or by both, combined by MIS.
 //!
 //! Both strategies make the same kind of path: tentative collisions at the majorant's rate, all
 //! null up to the last. The majorant's transmittance and rate cancel between them, so that with P
 //! the null-collision walk's own probabilities
 //! p_null : p_guided = Π P_n(x_i) · μ̄ P_s(x_k) : p_select(t_k) (Huang et al. 2021, section 3).
 //!
-//! What a guide is made from (the probes, a point of a light) is fixed before either strategy
-//! draws.
+//! Guides are built from probes and points of lights, which are fixed before either strategy draws.
 
 use glam::Vec3A;
 
@@ -31,20 +30,20 @@ use crate::{
 /// Probability of null-collision tracking where a flight is either that or guided. It bounds the
 /// weights by its inverse.
 const NULL_SHARE: f32 = 0.6;
-/// Guided flights that what a ray brings is spread over at least.
+/// Least number of guided flights that the light of a ray is divided by for the weight window.
 const LEAST_SPREAD: f32 = 0.1;
 
 /// p_select: the densities that guide along one ray, each with the same share.
 #[derive(Debug)]
 pub(super) struct DistanceGuide {
-    /// Of the probes.
+    /// Density that the probes along the ray give.
     pub(super) distance_pdf: Option<DistancePdf>,
-    /// Towards a point of a light.
+    /// Equiangular density towards a point of a light.
     pub(super) light: Option<Equiangular>,
 }
 
 impl DistanceGuide {
-    /// `None` where there is nothing to guide by.
+    /// Combines the two densities with equal shares; `None` without either.
     pub(super) fn new(
         distance_pdf: Option<DistancePdf>,
         light: Option<Equiangular>,
@@ -69,7 +68,7 @@ impl DistanceGuide {
     }
 }
 
-/// The density of a guide from those of its parts.
+/// Density of a guide from the densities of its parts, 1/length.
 pub(super) fn pdf_of_both(distance_pdf: Option<f32>, light: Option<f32>) -> f32 {
     match (distance_pdf, light) {
         (Some(distance_pdf), Some(light)) => 0.5 * (distance_pdf + light),
@@ -77,12 +76,12 @@ pub(super) fn pdf_of_both(distance_pdf: Option<f32>, light: Option<f32>) -> f32 
     }
 }
 
-/// The place on a ray between two parameters from which points of lights are chosen.
+/// The point of a ray between two parameters at which points of lights are chosen.
 pub(super) fn middle(ray: &Ray, t0: f32, t1: f32) -> Vec3A {
     ray.at(if t1.is_finite() { 0.5 * (t0 + t1) } else { t0 })
 }
 
-/// The flight along a ray through `medium` without a guide, by the tracker that is chosen.
+/// The unguided flight along a ray through `medium`, by the tracker of the strategy.
 pub(super) fn unguided(
     medium: MediumRay,
     strategy: &Strategy,
@@ -97,7 +96,7 @@ pub(super) fn unguided(
     null(medium, strategy, throughput, rng)
 }
 
-/// The flight along a ray through `medium` by null-collision tracking that knows its density.
+/// The flight along a ray through `medium` by null-collision tracking, with its density.
 fn null(medium: MediumRay, strategy: &Strategy, throughput: Rgb, rng: &mut PathRng) -> Flight {
     let optical_distance = rng.exponential_at(Slot::Distance);
     scatter(medium, strategy, throughput, optical_distance, rng)
@@ -130,9 +129,8 @@ pub(super) fn null_or_guided(
     flight
 }
 
-/// The flights along a ray from the camera: one that is unguided, and guided ones, more of them
-/// where more light is scattered into the ray. They share scattering; the unguided one brings all
-/// else.
+/// Flights along a camera ray: one unguided, and guided ones, more of them where more light is
+/// scattered into the ray. They share scattering; the unguided one carries all else.
 ///
 /// With n guided flights on average the guided density counts n times in the balance heuristic;
 /// they are drawn from one number, evenly apart.
@@ -141,7 +139,7 @@ pub(super) struct GuidedDistances<'g> {
     allocation: Allocation,
     /// Guided flights.
     count: u32,
-    /// The number that places them.
+    /// Jitter of the guided flights, in [0, 1).
     offset: f32,
 }
 
@@ -160,14 +158,14 @@ impl<'g> GuidedDistances<'g> {
         Self { guide, allocation, count, offset }
     }
 
-    /// What each flight is expected to bring.
+    /// Expected contribution of each guided flight, as radiance.
     pub(super) fn expected(&self) -> f32 {
         let light =
             self.guide.distance_pdf.as_ref().map_or(0.0, |distance_pdf| distance_pdf.light());
         light / self.allocation.flights.max(LEAST_SPREAD)
     }
 
-    /// Where the guided flights end.
+    /// Ray parameters at which the guided flights end.
     pub(super) fn iter(&self) -> impl Iterator<Item = f32> + use<'g> {
         let (guide, count, offset) = (self.guide, self.count, self.offset);
         (0..count).map(move |index| {
@@ -188,7 +186,7 @@ impl<'g> GuidedDistances<'g> {
         self.weighed(fill(medium, strategy, throughput, t, rng), false)
     }
 
-    /// The unguided one.
+    /// The unguided flight.
     pub(super) fn unguided(
         &self,
         medium: MediumRay,
@@ -234,7 +232,7 @@ mod tests {
     "#;
     const LAMP: Vec3A = Vec3A::new(0.3, 0.1, 0.2);
 
-    /// A ray through the smoke and what guides its flights: the line, the lamp or both.
+    /// A ray through the smoke and the guide of its flights: the probes' density, the lamp or both.
     fn guided_ray<'s>(
         scene: &'s Scene,
         probes: &Probes,
@@ -251,15 +249,15 @@ mod tests {
         Some((DistanceGuide::new(distance_pdf, light.filter(|_| index % 3 != 1))?, medium))
     }
 
-    /// A flight as the path sees it, the same with its weight over the density of chance alone, and
-    /// how often each of the two kinds is drawn on average.
+    /// A flight as the path sees it, the same with its weight over the density of null-collision
+    /// sampling alone, and the expected number of each of the two kinds.
     struct Drawn {
         flight: Flight,
         plain: Flight,
         counts: [f32; 2],
     }
 
-    /// Of a ray that has one flight.
+    /// A draw on a ray that has one flight.
     fn one_of_one(
         strategy: &Strategy,
         guide: &DistanceGuide,
@@ -280,7 +278,7 @@ mod tests {
         Drawn { flight, plain, counts: [NULL_SHARE, 1.0 - NULL_SHARE] }
     }
 
-    /// Of a ray that has several, the first guided one if there is any.
+    /// A draw on a ray that has several flights: the first guided one if there is any.
     fn one_of_several(
         strategy: &Strategy,
         guide: &DistanceGuide,
@@ -289,23 +287,23 @@ mod tests {
     ) -> Drawn {
         let film = Brightness { scattered: 1.0, share: 0.7 };
         let mut rng = PathRng::new(index, UVec2::ZERO, 0);
-        let fan = GuidedDistances::new(strategy, guide, film, &mut rng);
+        let distances = GuidedDistances::new(strategy, guide, film, &mut rng);
         let mut again = rng.clone();
         let medium = || medium.clone();
-        let (flight, plain) = match fan.iter().next() {
+        let (flight, plain) = match distances.iter().next() {
             Some(t) => (
-                fan.guided(medium(), strategy, t, Rgb::ONE, &mut rng),
+                distances.guided(medium(), strategy, t, Rgb::ONE, &mut rng),
                 fill(medium(), strategy, Rgb::ONE, t, &mut again),
             ),
             None => (
-                fan.unguided(medium(), strategy, Rgb::ONE, &mut rng),
+                distances.unguided(medium(), strategy, Rgb::ONE, &mut rng),
                 null(medium(), strategy, Rgb::ONE, &mut again),
             ),
         };
-        Drawn { flight, plain, counts: [1.0, fan.allocation.flights] }
+        Drawn { flight, plain, counts: [1.0, distances.allocation.flights] }
     }
 
-    /// Density of a guide's draws at `t` from nothing but how it draws: the slope of their
+    /// Density of a guide's draws at `t` estimated from the samples alone: the slope of their
     /// distribution, found by bisection. `None` where it has a step nearby.
     fn drawn_density(guide: &DistanceGuide, t: f32) -> Option<f32> {
         const STEP: f32 = 4e-3;
@@ -330,9 +328,10 @@ mod tests {
         (smooth && wide > 1e-3).then_some(wide)
     }
 
-    /// Of thousands of paths, by chance and guided: the weight is f over the mixture of both
-    /// densities, that of chance as the walk tells it (which its own tests hold against the
-    /// product) and that of the guide as the slope of how it draws.
+    /// For thousands of flights, by null-collision sampling and guided: the weight is f over the
+    /// mixture of both densities, that of null-collision sampling as the walk gives it (which its
+    /// own tests hold against the product) and that of the guide as the slope of its samples'
+    /// distribution.
     #[test]
     fn weights_divide_by_the_mixture_of_what_draws() {
         let scene = Scene::of_text(SMOKE);

@@ -1,8 +1,8 @@
 //! Walks of their own that gather a ray's emission: ∫ T ε dt over the whole ray, through every
 //! medium, whatever the scattering walk does there (Huang et al. 2021, section 2).
 //!
-//! All have the same mean. They differ in where they look at the emission and in how they learn
-//! the transmittance in front of it.
+//! All have the same mean. They differ in where they read the emission and in how they estimate the
+//! transmittance in front of it.
 
 mod optimal;
 pub mod ratio;
@@ -26,11 +26,12 @@ pub struct EmissionEstimator(EstimatorKind);
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum EstimatorKind {
     RatioTracking(EmissionMajorant),
-    /// With that many reads of the emission along the brightest chord.
+    /// Stratified sampling with this many reads of the emission along the brightest chord.
     Stratified(f32),
-    /// With that many collisions along the brightest chord.
+    /// Ratio tracking under the optimal majorant with this many collisions along the brightest
+    /// chord.
     Optimal(f32),
-    /// Biased, by steps of so many voxels.
+    /// Biased ray marching by steps of this many voxels.
     March(f32),
 }
 
@@ -58,8 +59,8 @@ impl EmissionEstimator {
         })
     }
 
-    /// Whether the walk takes a number that is measured for the picture: the optimal majorant, where
-    /// camera rays gather emission by a walk of its own.
+    /// Whether k is fitted to the picture before it starts: for the optimal majorant, where camera
+    /// rays gather emission by a walk of its own.
     pub fn is_fitted(strategy: &Strategy) -> bool {
         strategy.integrator != Integrator::March
             && strategy.majorant_boost
@@ -68,12 +69,12 @@ impl EmissionEstimator {
             && strategy.advanced.boost_amount > 0.0
     }
 
-    /// By the optimal majorant, with so many looks along the brightest chord.
-    pub(super) fn optimal(looks: f32) -> Self {
-        Self(EstimatorKind::Optimal(looks))
+    /// Ratio tracking under the optimal majorant, with `k` collisions along the brightest chord.
+    pub(super) fn optimal(k: f32) -> Self {
+        Self(EstimatorKind::Optimal(k))
     }
 
-    /// With so few reads that one more ray costs next to nothing.
+    /// Stratified sampling with so few reads that one more ray costs next to nothing.
     pub(super) fn coarse() -> Self {
         Self(EstimatorKind::Stratified(COARSE))
     }
@@ -84,8 +85,8 @@ impl EmissionEstimator {
             EstimatorKind::RatioTracking(majorant) => {
                 ratio::gather(medium, |segment, _| majorant.rate(segment), rng)
             }
-            EstimatorKind::Stratified(looks) => stratified::gather(medium, looks, ray_kind, rng),
-            EstimatorKind::Optimal(looks) => optimal::gather(medium, looks, ray_kind, rng),
+            EstimatorKind::Stratified(reads) => stratified::gather(medium, reads, ray_kind, rng),
+            EstimatorKind::Optimal(k) => optimal::gather(medium, k, ray_kind, rng),
             EstimatorKind::March(voxels) => march::gather(medium, voxels, rng),
         }
     }

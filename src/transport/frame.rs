@@ -56,7 +56,7 @@ impl Frame {
         Self { scene, size, seed, emission_estimator, probes, brightness }
     }
 
-    /// [`Frame::with_probes`], unless it is given up on the way.
+    /// [`Frame::with_probes`], unless `progress` cancels it.
     ///
     /// # Errors
     /// [`Error::Cancelled`](crate::error::Error::Cancelled) where `progress` says so.
@@ -75,7 +75,7 @@ impl Frame {
         Ok(Self { scene, size, seed, emission_estimator, probes, brightness })
     }
 
-    /// The same frame with another seed. What was prepared for one holds for the other.
+    /// A copy of the frame with another seed, which shares everything that was prepared.
     pub fn with_seed(&self, seed: u64) -> Self {
         Self { seed, ..self.clone() }
     }
@@ -117,7 +117,7 @@ impl Frame {
         }
     }
 
-    /// The same frame once its pilot pass has run.
+    /// Runs the pilot pass of the frame.
     ///
     /// # Errors
     /// [`Error::Cancelled`](crate::error::Error::Cancelled) where `progress` says so.
@@ -126,7 +126,7 @@ impl Frame {
         Ok(PreparedFrame { frame: self, prepared })
     }
 
-    /// Whether a pilot pass finds how many guided flights pay.
+    /// Whether a pilot pass decides the number of guided flights.
     fn has_pilot(&self) -> bool {
         self.probes.is_some() && self.scene.strategy.learns_share()
     }
@@ -163,7 +163,7 @@ impl PreparedFrame {
         Frame::new(scene, size, seed, progress)?.prepared(progress)
     }
 
-    /// The same frame with another seed.
+    /// A copy of the frame with another seed, which shares the result of the pilot pass.
     pub fn with_seed(&self, seed: u64) -> Self {
         Self { frame: self.frame.with_seed(seed), prepared: self.prepared }
     }
@@ -178,8 +178,8 @@ impl PreparedFrame {
         &self.frame
     }
 
-    /// Guided flights of a camera ray, relative to those that the probes propose: those that pay in
-    /// this picture, 0 where none do.
+    /// Guided flights of a camera ray, relative to those that the probes propose: the most
+    /// efficient number for this picture, 0 for none.
     pub fn guided_flights(&self) -> f32 {
         self.prepared.guided_flights.unwrap_or(1.0)
     }

@@ -1,6 +1,5 @@
-//! Guidance of a path by the probes: which light to sample at a vertex, where to scatter along a
-//! ray, and which directions to draw beside those of BSDF or phase sampling: the glow around a
-//! light, and caustics.
+//! Guiding of a path by the probes: the light to sample at a vertex, the distance to scatter at
+//! along a ray, and directions beside those of BSDF or phase sampling: airlight and caustics.
 
 use std::f32::consts::PI;
 
@@ -21,16 +20,16 @@ use crate::sampling::guiding_mixture::{GuidingLobe, GuidingMixture};
 use crate::sampling::von_mises_fisher::VonMisesFisher;
 use crate::volume::world::MediumRay;
 
-/// Rays of a path that are guided at most: later ones bring so little that guides cost more than
-/// they gain, and each adds to the spread of the path's weight.
+/// Most rays of a path that are guided: later ones contribute so little that guiding costs more
+/// than it gains, and each adds to the spread of the path's weight.
 const GUIDED_RAYS: u32 = 4;
-/// Share of the directions that go to bundles of light where nothing else is.
+/// Share of the directions drawn towards caustics where there is no other indirect light.
 const MOST_CAUSTICS: f32 = 0.5;
 
-/// Part of the light that has to come straight from lights for their glow to get all of its share.
+/// Share of direct light, in light as a whole, from which on airlight gets all of its share.
 const STRAIGHT: f32 = 0.3;
 
-/// How a vertex chooses the light it samples: by the scores of the probe around it, if there is one.
+/// Choice among the lights at a vertex: by the scores of the probe around it, if there is one.
 pub(super) fn light_choice(scene: &Scene, context: &PathContext, vertex: &Vertex) -> LightChoice {
     let choice = direct::choice(&scene.strategy);
     let from = vertex.receiver();
@@ -42,8 +41,8 @@ pub(super) fn light_choice(scene: &Scene, context: &PathContext, vertex: &Vertex
     }
 }
 
-/// p_select of the ray number `scatters` of a path, if anything guides it. `light` is the point of a
-/// light that the vertex before has sampled; for a camera ray one is chosen here.
+/// p_select of ray number `scatters` of a path, if anything guides it. `light` is the point of a
+/// light that was sampled at the vertex before; for a camera ray one is drawn here.
 pub(super) fn distances(
     scene: &Scene,
     context: &PathContext,
@@ -71,8 +70,8 @@ pub(super) fn distances(
     DistanceGuide::new(distance_pdf, equiangular)
 }
 
-/// Draws the direction in which a path goes on from its vertex number `scatters`: sometimes to
-/// where the probes know of light.
+/// Draws the direction in which a path continues from its vertex number `scatters`, with a share
+/// for the directions of light that the probes estimate.
 pub(super) fn direction(
     scene: &Scene,
     context: &PathContext,
@@ -84,7 +83,7 @@ pub(super) fn direction(
     let strategy = &scene.strategy;
     match context.probes.filter(|_| scatters < GUIDED_RAYS && strategy.guides()) {
         Some(probes) => {
-            // Without guided flights there are no splits that would even out what the glow brings.
+            // Without guided flights there are no splits to even out the weights of airlight.
             let light = light.filter(|_| context.flights > 0.0);
             vertex.sample_guided(&mixture(&strategy.advanced, probes, vertex, light), rng)
         }
@@ -92,7 +91,8 @@ pub(super) fn direction(
     }
 }
 
-/// The directions to draw at a vertex that sampled `light`, a point of one, if it has a place.
+/// Mixture of guided directions at a vertex; `light` is the sampled point of a light, if it has
+/// one.
 fn mixture(
     advanced: &Advanced,
     probes: &Probes,
@@ -115,34 +115,34 @@ fn mixture(
     guiding
 }
 
-/// How much of its share the glow around a light gets: all, unless most light has scattered on its
-/// way. Then it comes from all around, the light is no better guess than any, and guesses in vain
-/// add to the spread of the path's weight.
+/// Factor, 0 to 1, of the share of airlight: 1, unless most light has been scattered before. Such
+/// light comes from all around, so that the light's own direction is no better than any, and
+/// guiding in vain adds to the spread of the path's weight.
 fn worth_of_airlight(around: &Surroundings<'_>) -> f32 {
     let straight = around.direct / (around.direct + around.indirect);
     if straight.is_finite() { (straight / STRAIGHT).min(1.0) } else { 0.0 }
 }
 
-/// Bundles of light by what they bring, relative to all that comes indirectly.
+/// Adds the caustics by their contributions, relative to all indirect light.
 fn add_caustics(
     guiding: &mut GuidingMixture,
     around: &Surroundings<'_>,
     vertex: &Vertex,
     from: Vec3A,
 ) {
-    let aim = |lobe: &CausticLobe| {
+    let axis_of = |lobe: &CausticLobe| {
         let axis = (lobe.point - from).try_normalize()?;
         Some((axis, lobe.fluence * vertex.rough_value(axis)))
     };
-    let bundled: f32 = around.caustic_lobes.iter().filter_map(aim).map(|(_, value)| value).sum();
-    let scale = MOST_CAUSTICS / (bundled + around.indirect / (4.0 * PI));
-    if !(bundled > 0.0 && scale.is_finite()) {
+    let total: f32 = around.caustic_lobes.iter().filter_map(axis_of).map(|(_, value)| value).sum();
+    let scale = MOST_CAUSTICS / (total + around.indirect / (4.0 * PI));
+    if !(total > 0.0 && scale.is_finite()) {
         return;
     }
     for lobe in around.caustic_lobes {
-        if let Some((axis, value)) = aim(lobe) {
-            let caustic = VonMisesFisher::new(axis, lobe.concentration);
-            guiding.add(scale * value, GuidingLobe::Caustic(caustic));
+        if let Some((axis, value)) = axis_of(lobe) {
+            let distribution = VonMisesFisher::new(axis, lobe.concentration);
+            guiding.add(scale * value, GuidingLobe::Caustic(distribution));
         }
     }
 }

@@ -1,16 +1,16 @@
-//! The old system, kept for comparison: ray marching, with a table of importance along each ray.
+//! Ray marching with a table of importance along each ray: the old system, kept for comparison.
 //!
-//! The medium along a ray is cut into steps. Each is read at one jittered place and taken to be the
-//! same all along, so that with T̂ at its beginning a it brings T̂(a) ε (1 − exp(−μ_t Δ))/μ_t of
-//! emission, and as much of scattering with μ_s in place of ε. The table holds what scatters: a
-//! scattering event's place is drawn from it, p(t) ∝ T̂ μ_s, and where nothing behind the medium
-//! needs to be reached, the ray always scatters. The emission is the sum of all steps: to draw one
-//! of them by its share and to divide by that would bring the very same.
+//! The medium along a ray is cut into steps. Each is read at one jittered place and taken to be
+//! uniform, so that with T̂ at its beginning a it contributes T̂(a) ε (1 − exp(−μ_t Δ))/μ_t of
+//! emission, and as much of scattering with μ_s in place of ε. The table holds the steps that
+//! scatter: the place of a scattering event is drawn from it, p(t) ∝ T̂ μ_s, and where nothing
+//! behind the medium needs to be reached, the ray always scatters. The emission is the sum of all
+//! steps: to draw one of them by its share and to divide by that would give the very same.
 //!
 //! Biased: each read is one of μ_t at a place drawn from its step, so that τ̂ has mean τ, but by
 //! Jensen's inequality exp(−τ̂) has a larger mean than exp(−τ), by half the variance of τ̂, which
-//! falls with the third power of the step where the medium is smooth. Uniform stretches are one
-//! step, however long, and exact. What is done with the table is unbiased given the table.
+//! falls with the third power of the step where the medium is smooth. Uniform segments are one
+//! step, however long, and exact. Sampling is unbiased given the table.
 
 use std::ops::ControlFlow;
 
@@ -29,22 +29,22 @@ use crate::{
     },
 };
 
-/// Below this transmittance a march goes on by chance only.
+/// Transmittance below which a march meets Russian roulette.
 const ROULETTE_BELOW: f32 = 1e-3;
-/// What has no voxels has this many to a stretch of one bound.
-const VOXELS_PER_STRETCH: f32 = 4.0;
+/// Voxels that a segment counts as where nothing has voxels.
+const VOXELS_PER_SEGMENT: f32 = 4.0;
 
-/// A stretch of the ray that is taken to be the same all along.
+/// One step of a march: a piece of the ray that is taken to be uniform.
 #[derive(Clone, Copy, Debug)]
 struct MarchStep {
-    /// Where it begins.
+    /// Ray parameter at which the step begins.
     t0: f32,
     length: f32,
-    /// Where it is read.
+    /// Ray parameter at which the medium is read.
     at: f32,
-    /// The number of its segment.
+    /// Number of the segment that the step lies in.
     segment: u32,
-    /// Whether anything emits there.
+    /// Whether anything emits in the segment.
     emits: bool,
 }
 
@@ -77,7 +77,7 @@ fn march(
     steps
 }
 
-/// How many steps of so many voxels a segment is cut into.
+/// Number of steps of so many voxels that a segment is cut into.
 fn parts_of(segment: &Segment, voxels: f32) -> u32 {
     let length = segment.t1 - segment.t0;
     if segment.uniform || !length.is_finite() {
@@ -85,12 +85,12 @@ fn parts_of(segment: &Segment, voxels: f32) -> u32 {
     }
     let voxels_across = match segment.voxel_rate > 0.0 {
         true => length * segment.voxel_rate,
-        false => VOXELS_PER_STRETCH,
+        false => VOXELS_PER_SEGMENT,
     };
     ((voxels_across / voxels).ceil() as u32).max(1)
 }
 
-/// The way marched so far.
+/// Transmittance and emission of the part of the ray marched so far.
 struct MarchState {
     transmittance: Rgb,
     emission: Rgb,
@@ -126,31 +126,31 @@ fn read(medium: &MediumRay<'_>, step: &MarchStep) -> Coefficients {
     Coefficients { mu_t, mu_s, emission: Rgb::ZERO }
 }
 
-/// Emission and transmittance along a look at a light, by steps of so many voxels.
+/// Emission and transmittance along a shadow ray to a volume, by steps of so many voxels.
 pub(super) fn gather(medium: MediumRay<'_>, voxels: f32, rng: &mut PathRng) -> RayEmission {
-    let mut way = MarchState::new();
+    let mut state = MarchState::new();
     let jitter = rng.at(Slot::LightEmission);
     let steps =
-        march(medium, voxels, jitter, |medium, step| way.pass(step, &read(medium, step), rng));
-    way.gathered(steps)
+        march(medium, voxels, jitter, |medium, step| state.pass(step, &read(medium, step), rng));
+    state.gathered(steps)
 }
 
 /// Transmittance along a shadow ray, and the number of steps.
 pub(super) fn transmittance(medium: MediumRay<'_>, voxels: f32, rng: &mut PathRng) -> (Rgb, u32) {
-    let mut way = MarchState::new();
+    let mut state = MarchState::new();
     let jitter = rng.at(Slot::LightEmission);
     let steps = march(medium, voxels, jitter, |medium, step| {
         let mu_t = medium.mu_t(step.at);
-        way.pass(step, &Coefficients { mu_t, ..Coefficients::default() }, rng)
+        state.pass(step, &Coefficients { mu_t, ..Coefficients::default() }, rng)
     });
-    (way.transmittance, steps)
+    (state.transmittance, steps)
 }
 
 /// The steps of one ray that scatter. Its memory serves all rays of a path.
 #[derive(Clone, Debug, Default)]
 pub(super) struct MarchTable {
     rows: Vec<MarchRow>,
-    /// The path's throughput over its mean: which channels matter.
+    /// The path's throughput over its mean: the weights of the channels.
     color: Rgb,
     /// T̂ of the whole ray.
     transmittance: Rgb,
@@ -159,7 +159,7 @@ pub(super) struct MarchTable {
 #[derive(Clone, Copy, Debug)]
 struct MarchRow {
     step: MarchStep,
-    /// T̂ where it begins.
+    /// T̂ at the beginning of the step.
     transmittance: Rgb,
     mu_t: Rgb,
     mu_s: Rgb,
@@ -173,15 +173,16 @@ impl MarchRow {
         self.transmittance * attenuated(self.mu_s, self.mu_t, self.step.length)
     }
 
-    /// T̂ μ_s, up to a factor, so far behind its beginning.
+    /// T̂ μ_s, up to a factor, at this distance behind the beginning of the step.
     fn density(&self, distance: f32) -> Rgb {
         // In proportion to the largest, which single precision may hold but not a multiple of.
         let mu_s = self.mu_s / self.mu_s.max_element();
         self.transmittance * mu_s * exp_neg(self.mu_t, distance)
     }
 
-    /// A distance behind its beginning with density ∝ the mean over the channels of
-    /// color · T̂ μ_s: a channel by its share, then an exponential one cut at the end of the step.
+    /// A distance behind the beginning of the step with density ∝ the mean over the channels of
+    /// color · T̂ μ_s: a channel by its share, then an exponential distance cut at the end of the
+    /// step.
     fn sample(&self, color: Rgb, u: f32) -> f32 {
         let shares = color * self.scattered();
         let mut left = u * shares.element_sum();
@@ -203,8 +204,8 @@ impl MarchRow {
 }
 
 impl MarchTable {
-    /// Marches along the ray of a path and notes what scatters; emission and transmittance of the
-    /// whole ray are returned.
+    /// Marches along a ray of a path and tabulates the steps that scatter; returns emission and
+    /// transmittance of the whole ray.
     pub(super) fn fill(
         &mut self,
         medium: MediumRay<'_>,
@@ -214,28 +215,28 @@ impl MarchTable {
     ) -> RayEmission {
         self.rows.clear();
         self.color = throughput / mean(throughput);
-        let (mut way, mut sum) = (MarchState::new(), 0.0);
+        let (mut state, mut sum) = (MarchState::new(), 0.0);
         let jitter = rng.at(Slot::Emission);
         let steps = march(medium, voxels, jitter, |medium, step| {
             let c = read(medium, step);
             if c.mu_s != Rgb::ZERO {
                 let Coefficients { mu_t, mu_s, .. } = c;
                 let mut row =
-                    MarchRow { step: *step, transmittance: way.transmittance, mu_t, mu_s, sum };
+                    MarchRow { step: *step, transmittance: state.transmittance, mu_t, mu_s, sum };
                 sum += mean(self.color * row.scattered());
                 row.sum = sum;
                 self.rows.push(row);
             }
-            way.pass(step, &c, rng)
+            state.pass(step, &c, rng)
         });
-        self.transmittance = way.transmittance;
-        way.gathered(steps)
+        self.transmittance = state.transmittance;
+        state.gathered(steps)
     }
 
-    /// Draws how the flight along the ray goes on: by scattering, or to its end if it `goes_on`
-    /// there. `medium` is the one the table was filled from.
+    /// Draws the flight's event: scattering, or the end of the ray if the path `goes_on` there.
+    /// `medium` is the one the table was filled from.
     ///
-    /// Unbiased given the table: with f_c what a place brings to channel c, its density is
+    /// Unbiased given the table: with f_c the contribution of a place to channel c, its density is
     /// mean (color · f) / Σ, its weight f_c over that.
     pub(super) fn draw(&self, medium: MediumRay<'_>, goes_on: bool, rng: &mut PathRng) -> Flight {
         let beyond = if goes_on { self.transmittance } else { Rgb::ZERO };
@@ -268,7 +269,7 @@ impl MarchTable {
     }
 }
 
-/// The phase function where a step was read.
+/// The phase function at the place where a step was read.
 fn phase(mut medium: MediumRay<'_>, step: &MarchStep) -> PhaseMix {
     for _ in 0..=step.segment {
         medium.next_segment();

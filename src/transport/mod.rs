@@ -1,4 +1,5 @@
-//! How light moves through volumes: the strategies and the paths they sample. Read `path` first.
+//! Light transport in participating media: the strategies and the paths they sample. Read `path`
+//! first.
 
 pub mod camera;
 pub mod context;

@@ -1,57 +1,58 @@
-//! Looking over a path's shoulder: renders look away at no cost, a replay prints every step.
+//! Observation of a path step by step: renders observe nothing at no cost, a replay prints every
+//! step.
 
 use super::vertex::Vertex;
 use crate::math::{Ray, Rgb};
 use glam::Vec3A;
 
-/// What happens along a path, in order.
+/// A step of a path, in the order in which they happen.
 #[derive(Clone, Copy, Debug)]
 pub enum PathStep<'a> {
     /// A ray sets out; surfaces end it at `t_max`.
     Ray {
         /// The ray.
         ray: &'a Ray,
-        /// Where it ends.
+        /// Ray parameter of the surface that ends it.
         t_max: f32,
         /// The path's throughput so far.
         throughput: Rgb,
     },
     /// Volume emission was added.
     Emission {
-        /// What it adds to the pixel.
+        /// Contribution to the pixel.
         contribution: Rgb,
     },
     /// The surface or environment at the ray's end was added.
     End {
-        /// What it adds to the pixel.
+        /// Contribution to the pixel.
         contribution: Rgb,
     },
     /// The path was absorbed.
     Absorbed {
-        /// Where.
+        /// Point of the absorption.
         point: Vec3A,
     },
     /// The path scatters or is reflected.
     Vertex {
-        /// Where and how.
+        /// The vertex.
         vertex: &'a Vertex,
-        /// The throughput that arrives there.
+        /// The path's throughput on arrival.
         throughput: Rgb,
     },
     /// A sampled light was added.
     Light {
-        /// What it adds to the pixel.
+        /// Contribution to the pixel.
         contribution: Rgb,
     },
 }
 
-/// Sees every step of a path.
+/// Observer of the steps of a path.
 pub trait Observer {
     /// Called for each step.
     fn step(&mut self, step: PathStep);
 }
 
-/// Sees nothing.
+/// Observer that ignores every step.
 pub struct Nobody;
 
 impl Observer for Nobody {

@@ -1,4 +1,5 @@
-//! The path: camera, flights through the medium, scattering and reflection, light on the way.
+//! A path: the camera, flights through the medium, scattering and reflection, and the light along
+//! it.
 //!
 //! In the symbols of the talk, with d the distance to the surface that the ray meets,
 //! L(x, ω) = ∫₀^d T [μ_s L_s + ε] dt + T(d) L_end, and L_s(x, ω) = ∫ ρ(ω, ω') L(x, ω') dω'.
@@ -13,10 +14,10 @@
 //! twice. Every combination of toggles has the same mean. A marched ray stands for both walks,
 //! biased.
 //!
-//! Where the talk's ideas sit: emission at every collision in [`super::tracking::scattering`],
+//! The talk's ideas in this code: emission at every collision in [`super::tracking::scattering`],
 //! emission ratio tracking in [`super::emission::ratio`], the majorant boost in
 //! `tracking::majorant`, fires as lights in [`super::direct`], probe MIS in `distance` and
-//! [`super::probes`]; how often each is sampled in `counts`.
+//! [`super::probes`]; the number of samples of each in `counts`.
 
 mod state;
 
@@ -37,7 +38,8 @@ use crate::math::{PathRng, Ray, Rgb};
 use crate::surface::{self, Intersection};
 use crate::volume::world::MediumRay;
 
-/// Most scattering events and reflections of any path. A path that gets here is counted.
+/// Most scattering events and reflections of any path. A path that reaches this limit is cut and
+/// counted.
 pub const GUARD: u32 = 100_000;
 
 /// Follows one path from the camera along `ray`.
@@ -59,18 +61,18 @@ struct Path<'s> {
     scene: &'s Scene,
     context: PathContext<'s>,
     state: State,
-    /// Contribution that a flight of the camera ray is expected to make; 0 where that is not known.
+    /// Expected contribution of one flight of the camera ray; 0 where it is unknown.
     expected: f32,
     /// Splits whose branches are being followed.
     nested: u32,
-    /// The steps of the present ray, where it is marched.
+    /// Table of steps of the present ray, for ray marching.
     table: march::MarchTable,
     contributions: Contributions,
 }
 
 impl Path<'_> {
-    /// Advance: one ray, its emission and its end, and the flight to the vertex on it. Scatter: on
-    /// from that vertex. False when the path is over.
+    /// Advances by one ray: its emission and its end, and the flight to its vertex. Then scatters
+    /// at that vertex. False when the path is over.
     fn advance(&mut self, rng: &mut PathRng, observer: &mut impl Observer) -> bool {
         let (scene, ray, throughput) = (self.scene, self.state.ray, self.state.throughput);
         let end = surface::intersect(&scene.surfaces, &ray);
@@ -110,7 +112,7 @@ impl Path<'_> {
         }
     }
 
-    /// The vertex a flight leads to, if there is one.
+    /// The vertex at the end of a flight; `None` where the path ends.
     fn arrive(
         &mut self,
         event: Event,
@@ -136,8 +138,8 @@ impl Path<'_> {
         }
     }
 
-    /// Goes on from a vertex as often as pays; false when the path is over. All branches but the
-    /// last are followed to their end.
+    /// Continues the path from a vertex as often as the weight window asks for; false when the path
+    /// is over. All branches but the last are followed to their end.
     fn go_on(&mut self, vertex: &Vertex, rng: &mut PathRng, observer: &mut impl Observer) -> bool {
         let State { ray, throughput, scatters, .. } = self.state;
         let standing =
@@ -156,7 +158,7 @@ impl Path<'_> {
         splitting.count > 0 && self.scatter(vertex, &counts, rng, observer)
     }
 
-    /// Scatter: light samples at a vertex, then a new direction; false when the path ends there.
+    /// Scatters at a vertex: light samples, then a new direction; false when the path ends there.
     fn scatter(
         &mut self,
         vertex: &Vertex,
@@ -203,7 +205,7 @@ impl Path<'_> {
         self.survives(counts, rng)
     }
 
-    /// Russian roulette, compensated.
+    /// Russian roulette; the throughput of a path that survives compensates for it.
     fn survives(&mut self, counts: &Counts, rng: &mut PathRng) -> bool {
         let survival = counts.survival(self.state.throughput, self.state.guiding_ratio);
         if survival >= 1.0 || survival <= 0.0 {
@@ -216,8 +218,8 @@ impl Path<'_> {
         survives
     }
 
-    /// Follows a branch to its end: what `begin` starts, and all rays after it. The path is then as
-    /// it was.
+    /// Follows a branch to its end, from the step that `begin` takes. The state of the path is then
+    /// restored.
     fn follow<O: Observer>(
         &mut self,
         branch: Branch,
@@ -235,8 +237,8 @@ impl Path<'_> {
     }
 
     /// The flight to the next scattering event, or to the end of the ray. The camera ray may have
-    /// guided ones beside it, which are followed first. Rays from vertices have one, which is
-    /// guided where nothing is gained by getting to their end.
+    /// guided flights beside it, which are followed first. Rays from vertices have one flight,
+    /// which is guided where the end of the ray need not be reached.
     fn fly(
         &mut self,
         medium: MediumRay,
@@ -256,16 +258,16 @@ impl Path<'_> {
         let strategy = &scene.strategy;
         let flight = match guide {
             None => distance::unguided(medium, strategy, throughput, rng),
-            Some(guide) if is_first => self.fan_out(medium, &guide, rng, observer),
+            Some(guide) if is_first => self.fly_guided(medium, &guide, rng, observer),
             Some(guide) => distance::null_or_guided(medium, strategy, &guide, throughput, rng),
         };
         self.contributions.count(flight.collisions);
         flight
     }
 
-    /// The camera ray's flights: as many guided ones as pay, each of which is followed, and the
-    /// unguided one, which is returned.
-    fn fan_out(
+    /// The camera ray's flights: guided ones in their allocated number, each of which is followed,
+    /// and the unguided one, which is returned.
+    fn fly_guided(
         &mut self,
         medium: MediumRay,
         guide: &DistanceGuide,
@@ -293,7 +295,7 @@ impl Path<'_> {
         distances.unguided(medium, strategy, throughput, rng)
     }
 
-    /// Marches along the present ray and keeps its table.
+    /// Marches along the present ray and fills its table of steps.
     fn march(&mut self, medium: MediumRay, rng: &mut PathRng) -> RayEmission {
         let voxels = self.scene.strategy.advanced.march_step;
         let marched = self.table.fill(medium, voxels, self.state.throughput, rng);
@@ -301,8 +303,8 @@ impl Path<'_> {
         marched
     }
 
-    /// The emission of the whole ray, by the emission walk if it was not `marched`, and the radiance
-    /// at its end through the same T, which is returned.
+    /// Gathers the emission of the whole ray, by the emission walk if it was not `marched`, and the
+    /// radiance at its end through the same transmittance T, which is returned.
     fn gather_whole_ray(
         &mut self,
         medium: MediumRay,
@@ -338,14 +340,14 @@ impl Path<'_> {
         gathered.transmittance
     }
 
-    /// Whether the path may not scatter any more: its last ray still gathers, both halves of the MIS
-    /// of the last vertex being due.
+    /// Whether the path has reached its limit of scattering events: its last ray still gathers
+    /// emission and background, as both halves of the MIS of the last vertex must be counted.
     fn is_last_ray(&self) -> bool {
         self.scene.max_scatters > 0 && self.state.scatters == self.scene.max_scatters
     }
 }
 
-/// Whether a path goes on from the end of its ray.
+/// Whether a path continues from the surface at the end of its ray.
 fn goes_on(end: Option<&Intersection>) -> bool {
     end.is_some_and(|end| end.surface.reflects())
 }

@@ -1,13 +1,14 @@
-//! Probes: spheres spread over the medium that know the light around them and say where along a ray
-//! scattering pays (Huang et al. 2021, section 3).
+//! Probes: spheres spread over the medium that estimate the light around them and guide scattering
+//! along rays to where the light is (Huang et al. 2021, section 3).
 //!
-//! They fill the leaves of an octree that is finer where more light is scattered, so that each
+//! Probes fill the leaves of an octree that is finer where more light is scattered, so that each
 //! stands for about as much of it. A probe keeps directions its light comes from instead of a score
-//! for one camera; the score towards any ray is read from them, μ_s ∫ L ρ dω, and weighed with the
-//! transmittance on the way. So they serve every vertex, and stay as they are when the camera moves.
+//! for one camera; the score towards any ray is read from them, μ_s ∫ L ρ dω, and weighted by the
+//! transmittance along the ray. So they serve every vertex, and stay as they are when the camera
+//! moves.
 //!
-//! They guide and no more: whatever they say, the picture's mean stays, as long as no sample
-//! changes what guides it.
+//! Probes only guide: whatever they estimate, the picture's mean is unchanged, as long as no sample
+//! changes the density that guides it.
 
 mod airlight;
 mod brightness;

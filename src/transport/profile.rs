@@ -1,5 +1,5 @@
-//! What lies along one ray and how the distance to a scattering event is drawn there, in numbers:
-//! for looking at, not for rendering. No chance is involved but a fixed one.
+//! Tabulated medium along one ray and densities of its scattering distances, for diagnostics, not
+//! for rendering. All random numbers are fixed.
 
 use glam::UVec2;
 
@@ -22,26 +22,27 @@ use crate::{
 /// Places between two rows at which the medium is read.
 const STEPS: u32 = 4;
 /// Points of lights that p_select is averaged over.
-const LOOKS: u32 = 128;
-/// Where the medium goes on for ever, it is followed to this optical depth.
+const POINTS: u32 = 128;
+/// Optical depth to which a medium without end is followed.
 const DEEPEST: f32 = 7.0;
-/// Fixed, with numbers that no picture is likely to use.
+/// Fixed seed, which no picture is likely to use.
 const SEED: u64 = 0x7072_6f66_696c_652e;
 
 /// A table over the distance along a ray.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Profile {
-    /// From where the medium begins to where it ends, or to a surface, in even steps.
+    /// Rows in even steps from the beginning of the medium to its end, or to a surface.
     pub rows: Vec<ProfileRow>,
-    /// Optical depth of all of it, of the channels' mean transmittance.
+    /// Optical depth of the whole ray, from the channels' mean transmittance.
     pub optical_depth: f32,
     /// Whether anything could guide distances along the ray.
     pub guided: bool,
-    /// Guided flights relative to what the probes propose; 0 where none pay in this picture.
+    /// Guided flights relative to the number that the probes propose; 0 where guiding does not pay
+    /// in this picture.
     pub flights: f32,
 }
 
-/// What is at one distance.
+/// Values at one distance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ProfileRow {
     /// The distance from the ray's origin.
@@ -55,12 +56,12 @@ pub struct ProfileRow {
     /// Density with which null-collision tracking scatters here, μ_t T, 1/length: the mean over the
     /// channels, which spectral MIS makes it. Where absorption gathers the emission, μ_s T instead.
     pub p_null: f32,
-    /// Density with which the guides scatter here, 1/length: the mean of what the points of light
-    /// give that a path may choose.
+    /// Density with which the guides scatter here, 1/length: the mean over the points of lights
+    /// that a path may draw.
     pub p_select: f32,
-    /// MIS weight of what null-collision tracking brings from here.
+    /// MIS weight of null-collision tracking for scattering here.
     pub weight_null: f32,
-    /// MIS weight of what the guides bring from here; both sum to 1 where anything scatters.
+    /// MIS weight of the guides for scattering here; both weights sum to 1 where anything scatters.
     pub weight_guided: f32,
 }
 
@@ -104,7 +105,7 @@ impl Profile {
     }
 }
 
-/// Where a medium without end has become dark.
+/// Distance at which a medium without end has become dark.
 fn visible_end(mut medium: MediumRay, t0: f32) -> f32 {
     let (mut depth, mut last) = (0.0, t0);
     while let Some(segment) = medium.next_segment() {
@@ -119,7 +120,7 @@ fn visible_end(mut medium: MediumRay, t0: f32) -> f32 {
     last
 }
 
-/// Fills in what the medium decides; the optical depth of all of it.
+/// Fills in the values of the medium; returns the optical depth of the whole ray.
 fn read_medium(
     mut medium: MediumRay,
     gather: EmissionGathering,
@@ -170,7 +171,7 @@ fn read_point(
 ) {
     let c = medium.coefficients(row.t);
     let scatters = if gather == EmissionGathering::Absorption { c.mu_s } else { c.mu_t };
-    // What extinguishes without scattering draws no distance that is used.
+    // A medium that absorbs without scattering draws no distance that is used.
     let scatters = if c.mu_s == Rgb::ZERO { Rgb::ZERO } else { scatters };
     row.mu_t = mean(c.mu_t);
     row.transmittance = mean(transmittance);
@@ -179,7 +180,7 @@ fn read_point(
     row.weight_null = if row.p_null > 0.0 { 1.0 } else { 0.0 };
 }
 
-/// Fills in what the guides decide; whether there are any.
+/// Fills in the densities and weights of the guides; returns whether there are any.
 fn guide(
     distance_pdf: Option<&DistancePdf>,
     lights: &[Option<Equiangular>],
@@ -204,7 +205,7 @@ fn guide(
     true
 }
 
-/// The densities by equal angles that a path may draw from.
+/// The equiangular densities that a path may draw from.
 fn points_of_light(
     scene: &Scene,
     probes: &Probes,
@@ -213,12 +214,12 @@ fn points_of_light(
 ) -> Vec<Option<Equiangular>> {
     let from = Receiver { position: distance::middle(ray, t0, t1), normal: None };
     let choice = direct::choice(&scene.strategy);
-    let look = |sample| {
+    let equiangular = |sample| {
         let mut rng = PathRng::new(SEED, UVec2::ZERO, sample);
         let point = direct::point_of_light(scene, &from, &choice, &mut rng)?;
         Equiangular::new(ray, point, probes.mean_cosine(), t0, t1)
     };
-    (0..LOOKS).map(look).collect()
+    (0..POINTS).map(equiangular).collect()
 }
 
 /// The MIS weights of both strategies.

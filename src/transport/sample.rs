@@ -1,4 +1,4 @@
-//! What one path brings to its pixel, and whatever can sample a pixel.
+//! Contribution of one path to its pixel, and the trait of pixel samplers.
 
 use glam::UVec2;
 
@@ -13,7 +13,7 @@ use crate::math::{Rgb, mean};
 /// series of random numbers, so that only those of the same version are continued.
 pub const PATH_VERSION: u64 = 1;
 
-/// What one path brought to its pixel: four parts that sum to the beauty, and what else is kept.
+/// Contribution of one path to its pixel: four parts that sum to the beauty, and auxiliary values.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PathSample {
     /// Volume emission seen on the camera ray.
@@ -22,7 +22,7 @@ pub struct PathSample {
     pub background: Rgb,
     /// Light after one scattering event or reflection.
     pub direct: Rgb,
-    /// Light after more of them.
+    /// Light after more than one scattering event or reflection.
     pub indirect: Rgb,
     /// 1 − transmittance to the background; 1 on surfaces.
     pub alpha: f32,
@@ -49,7 +49,7 @@ pub(super) struct Contributions {
 }
 
 impl Contributions {
-    /// Adds volume emission that is found on a ray after so many scattering events and reflections.
+    /// Adds volume emission on a ray after so many scattering events and reflections.
     pub(super) fn add_emission(
         &mut self,
         scatters: u32,
@@ -77,7 +77,7 @@ impl Contributions {
         observer.step(PathStep::End { contribution });
     }
 
-    /// Adds what a light sample brings to vertex number `scatters`.
+    /// Adds the contribution of a light sample at vertex number `scatters`.
     pub(super) fn add_light(
         &mut self,
         scatters: u32,
@@ -112,7 +112,7 @@ impl Contributions {
         self.sample.guard_hit = true;
     }
 
-    /// Whether a walk of the path was cut, or the path itself.
+    /// Whether the path or one of its walks was cut.
     pub(super) fn is_cut(&self) -> bool {
         self.sample.guard_hit
     }
@@ -137,30 +137,30 @@ impl Contributions {
     }
 }
 
-/// What the pilot pass of a picture has found, on which all samples of a pixel but the first rest.
-/// [`PixelSampler::prepare`] makes it.
+/// Result of a picture's pilot pass, which all samples of a pixel but the first depend on. Made by
+/// [`PixelSampler::prepare`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prepared {
     pub(super) guided_flights: Option<f32>,
 }
 
 impl Prepared {
-    /// For samplers whose later samples rest on nothing.
+    /// Result for samplers without a pilot pass.
     pub const NOTHING: Self = Self { guided_flights: None };
 
     /// Guided flights of a camera ray, relative to those that the probes propose; 0 where none pay.
-    /// `None` where no pilot decides it.
+    /// `None` where no pilot pass decides it.
     pub fn guided_flights(&self) -> Option<f32> {
         self.guided_flights
     }
 }
 
-/// Which sample of a pixel.
+/// Number of a sample of a pixel.
 #[derive(Clone, Copy, Debug)]
 pub enum SampleNumber<'p> {
-    /// The first, which waits for no pilot pass, so that a camera on the move never does.
+    /// The first sample, which waits for no pilot pass, so that a moving camera never does.
     First,
-    /// Any other, counted from 0 as all are.
+    /// Any later sample, by its index counted from 0, and the result of the pilot pass.
     Later(u32, &'p Prepared),
 }
 
@@ -173,7 +173,7 @@ impl<'p> SampleNumber<'p> {
         }
     }
 
-    /// Its index, counted from 0.
+    /// Index of the sample, counted from 0.
     pub fn index(&self) -> u32 {
         match *self {
             Self::First => 0,
@@ -182,13 +182,13 @@ impl<'p> SampleNumber<'p> {
     }
 }
 
-/// Anything that can sample a pixel: film and session know nothing more.
+/// A sampler of pixels: the only interface of light transport to film and session.
 pub trait PixelSampler: Send + Sync {
     /// One path through a pixel; the same arguments give the same path.
     fn sample(&self, pixel: UVec2, number: SampleNumber) -> PathSample;
 
-    /// Runs the pilot pass, which finds what all samples of a pixel but the first rest on. The same
-    /// sampler always finds the same.
+    /// Runs the pilot pass, whose result all samples of a pixel but the first depend on. The same
+    /// sampler always has the same result.
     ///
     /// # Errors
     /// [`Error::Cancelled`](crate::error::Error::Cancelled) where `progress` says so.

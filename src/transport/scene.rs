@@ -3,20 +3,20 @@
 use super::{camera::Camera, strategy::Strategy};
 use crate::{light::Lights, surface::Surface, volume::world::World};
 
-/// Everything a path needs to know.
+/// Scene data that a path reads: camera, volumes, surfaces, lights and strategy.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// Where the picture is taken from.
+    /// Camera that the picture is taken with.
     pub camera: Camera,
-    /// What fills space.
+    /// Volumes of the scene.
     pub world: World,
-    /// What bounds it.
+    /// Surfaces of the scene.
     pub surfaces: Vec<Surface>,
-    /// What lights it, emissive volumes apart.
+    /// Lights and environment of the scene; emissive volumes themselves belong to `world`.
     pub lights: Lights,
     /// Most real scattering events and reflections of a path; 0 for no limit but the guard.
     pub max_scatters: u32,
-    /// How it is sampled.
+    /// Sampling strategy.
     pub strategy: Strategy,
 }
 

@@ -22,7 +22,7 @@ const READS: f32 = 1.0;
 /// halfway would err by as much in the empty part of a cell as in the dense one.
 const CONTROL: f32 = 0.0;
 
-/// An estimate of the transmittance along the medium, and how often it was read.
+/// Estimates the transmittance along the medium; also returns the number of reads.
 pub fn transmittance(
     medium: MediumRay,
     estimator: TransmittanceEstimator,
@@ -103,12 +103,12 @@ fn residual(medium: MediumRay, rng: &mut PathRng) -> (Rgb, u32) {
 fn marching(mut medium: MediumRay, rng: &mut PathRng) -> (Rgb, u32) {
     let Some(mut segment) = medium.next_segment() else { return (Rgb::ONE, 0) };
     let jitters = [Slot::LightTransmittanceA, Slot::LightTransmittanceB].map(|slot| rng.at(slot));
-    let mut way = Transmittance::new(READS, jitters, rng);
+    let mut t_hat = Transmittance::new(READS, jitters, rng);
     loop {
         let crossed = if segment.uniform {
-            way.cross_uniform(medium.coefficients(segment.t0).mu_t, &segment, rng)
+            t_hat.cross_uniform(medium.coefficients(segment.t0).mu_t, &segment, rng)
         } else {
-            way.advance(&medium, segment.majorant, segment.t0, segment.t1, rng)
+            t_hat.advance(&medium, segment.majorant, segment.t0, segment.t1, rng)
         };
         if crossed.is_break() {
             break;
@@ -117,10 +117,10 @@ fn marching(mut medium: MediumRay, rng: &mut PathRng) -> (Rgb, u32) {
         segment = next;
     }
     // A walk that is cut may have read a few places more.
-    (way.estimate(), way.reads.min(MOST_COLLISIONS))
+    (t_hat.estimate(), t_hat.reads.min(MOST_COLLISIONS))
 }
 
-/// Of a uniform segment.
+/// Transmittance of a uniform segment, per channel.
 fn across_uniform(medium: &MediumRay, segment: &Segment) -> Rgb {
     exp_neg(medium.coefficients(segment.t0).mu_t, segment.t1 - segment.t0)
 }

@@ -242,7 +242,7 @@ impl Strategy {
             .find(|preset| self.with_toggles_of(*preset) == *self)
     }
 
-    /// With the toggles of a preset; the integrator and the advanced choices stay.
+    /// This strategy with the toggles of a preset; the integrator and the advanced choices stay.
     pub fn with_toggles_of(&self, preset: Preset) -> Self {
         Self { integrator: self.integrator, advanced: self.advanced, ..preset.strategy() }
     }
@@ -252,17 +252,18 @@ impl Strategy {
         self.emission_ratio_tracking || self.is_biased()
     }
 
-    /// Whether the picture is another one than the right one, however many samples it has.
+    /// Whether the picture converges to a biased result, however many samples it has.
     pub fn is_biased(&self) -> bool {
         self.integrator == Integrator::March
     }
 
-    /// Why the tracker is refused beside the rest, and how to mend that; `None` where it is not.
+    /// Reason why the tracker cannot be combined with the rest, and how to fix that; `None` where
+    /// it can.
     pub fn tracker_refusal(&self) -> Option<&'static str> {
         self.refusal_of(self.advanced.tracker)
     }
 
-    /// [`Strategy::tracker_refusal`] if `tracker` were chosen.
+    /// [`Strategy::tracker_refusal`] for `tracker` in place of the strategy's own.
     pub fn refusal_of(&self, tracker: Tracker) -> Option<&'static str> {
         if tracker != Tracker::Decomposition || self.is_biased() {
             return None;
@@ -284,12 +285,13 @@ impl Strategy {
         None
     }
 
-    /// Whether a pilot decides how often the probes are asked; not where nothing else is.
+    /// Whether a pilot pass decides the share of guided flights; only where null-collision sampling
+    /// is an alternative.
     pub fn learns_share(&self) -> bool {
         self.guides() && self.advanced.share_learning && self.advanced.distance == Distance::Mis
     }
 
-    /// Whether probes say where paths scatter.
+    /// Whether probes guide scattering.
     pub fn guides(&self) -> bool {
         self.probe_mis && self.advanced.distance != Distance::Null && !self.is_biased()
     }

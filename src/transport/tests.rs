@@ -13,7 +13,7 @@ use crate::scene::{self, Overrides, VolumeCache};
 const SIZE: UVec2 = UVec2::new(16, 12);
 
 /// Asks for everything: probes with scores of several lights, caustics, learning, the optimal
-/// majorant and a pilot, in a volume with cells that glows.
+/// majorant and a pilot, in an emissive volume with cells.
 const SCENE: &str = r#"
     [camera]
     position = [0, -4, 0]
@@ -45,8 +45,8 @@ const SCENE: &str = r#"
     material = { type = "conductor", alpha = 0.1, reflectance = 0.9 }
 "#;
 
-/// Runs `work` on one thread and says stop at the question of that number; how it ended, and the
-/// number of questions.
+/// Runs `work` on one thread and cancels it at the call of that number to `progress`; returns the
+/// result and the number of calls.
 fn questions<R: Send>(
     stop_at: u64,
     work: impl Fn(Progress) -> Result<R> + Send + Sync,
@@ -77,8 +77,8 @@ fn check_giving_up<R: Send>(
     }
 }
 
-/// Every probe asks, and so does every path that one learns from, every ray from a metal, every pixel
-/// that is measured.
+/// Every probe reports progress, and so do every path that one learns from, every photon and every
+/// pilot pixel.
 #[test]
 fn setting_up_a_frame_can_be_given_up_anywhere() {
     let scene = Arc::new(Scene::of_text(SCENE));
@@ -105,7 +105,7 @@ fn building_volumes_can_be_given_up_anywhere() {
     });
 }
 
-/// Whoever could have given it up and did not gets the same paths.
+/// Work that could have been cancelled and was not gives the same paths.
 #[test]
 fn what_was_not_given_up_is_the_same() {
     let scene = Arc::new(Scene::of_text(SCENE));

@@ -21,12 +21,12 @@ pub enum Toggle {
 }
 
 impl Toggle {
-    /// All of them, in the order of the strategy.
+    /// All toggles, in the order of the strategy.
     pub fn all() -> impl Iterator<Item = Self> {
         Self::iter()
     }
 
-    /// The name in the window and in tables.
+    /// Name of the toggle in the window and in tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::EmissionDecoupling => "Emission decoupling",
@@ -37,7 +37,7 @@ impl Toggle {
         }
     }
 
-    /// Its key in scene files.
+    /// Key of the toggle in scene files.
     pub fn key(self) -> &'static str {
         match self {
             Self::EmissionDecoupling => "strategy.emission_decoupling",
@@ -48,7 +48,7 @@ impl Toggle {
         }
     }
 
-    /// Its switch in `strategy`.
+    /// The field of the toggle in `strategy`.
     pub fn switch(self, strategy: &mut Strategy) -> &mut bool {
         match self {
             Self::EmissionDecoupling => &mut strategy.emission_decoupling,
@@ -59,12 +59,12 @@ impl Toggle {
         }
     }
 
-    /// Whether it is on in `strategy`.
+    /// Whether the toggle is on in `strategy`.
     pub fn is_on(self, strategy: &Strategy) -> bool {
         *self.switch(&mut { *strategy })
     }
 
-    /// `strategy` with it on or off.
+    /// `strategy` with the toggle on or off.
     pub fn set(self, strategy: &Strategy, on: bool) -> Strategy {
         let mut set = *strategy;
         *self.switch(&mut set) = on;
@@ -77,7 +77,8 @@ mod tests {
     use super::*;
     use crate::transport::strategy::Preset;
 
-    /// All of them on top of nothing are everything.
+    /// All toggles set on the baseline give the full preset, and all cleared on the full one the
+    /// baseline.
     #[test]
     fn the_toggles_are_all_that_presets_set() {
         let (baseline, full) = (Preset::Baseline.strategy(), Preset::Full.strategy());

@@ -27,38 +27,38 @@ use crate::math::{PathRng, Rgb};
 use crate::volume::medium::Segment;
 use crate::volume::world::MediumRay;
 
-/// Most tentative collisions of one walk. One that gets here is cut, and its path counted as cut:
-/// it takes coefficients far beyond what single precision can step through.
+/// Most tentative collisions of one walk. A walk that reaches this limit is cut, and its path
+/// counted as cut: it takes coefficients far beyond what single precision can step through.
 pub const MOST_COLLISIONS: u32 = 1 << 17;
-/// Below this weight a walk of transmittance goes on by chance only.
+/// Weight below which a walk of transmittance meets Russian roulette.
 pub(super) const ROULETTE_BELOW: f32 = 0.05;
 
-/// What a walk does on its way.
+/// A walk along a ray, by its actions at segments and collisions.
 pub(super) trait Walk {
-    /// The rate of tentative collisions μ̄ in a segment, at least its majorant. Asked for once in
-    /// each, from near to far; the walk's history may have a say in it.
+    /// The rate of tentative collisions μ̄ in a segment, at least its majorant. Called once for
+    /// each segment, from near to far; it may depend on the walk's history.
     fn rate(&mut self, medium: &MediumRay, segment: &Segment) -> f32;
 
     /// Crosses a uniform segment in closed form; false to be given its collisions instead.
     fn cross(&mut self, medium: &MediumRay, segment: &Segment, rng: &mut PathRng) -> bool;
 
-    /// Where the walk ends; at the end of the medium, if not before.
+    /// Ray parameter at which the walk ends, if not at the end of the medium.
     #[inline]
     fn until(&self) -> f32 {
         f32::INFINITY
     }
 
-    /// The end of the walk at [`Walk::until`], if that lies in the medium.
+    /// Called at the end of the walk, [`Walk::until`], if that lies in the medium.
     fn arrive(&mut self, _medium: &MediumRay, _at: &Collision) {}
 
-    /// A tentative collision under the majorant [`Collision::rate`].
+    /// Called at a tentative collision under the majorant [`Collision::rate`].
     fn collide(&mut self, medium: &MediumRay, at: &Collision, rng: &mut PathRng)
     -> ControlFlow<()>;
 }
 
 /// A tentative collision.
 pub(super) struct Collision<'s> {
-    /// Where it is, as a ray parameter.
+    /// Ray parameter of the collision.
     pub(super) t: f32,
     /// The majorant μ̄ it was drawn under.
     pub(super) rate: f32,
@@ -121,7 +121,8 @@ pub(super) fn null_coefficient(rate: f32, mu_t: Rgb) -> Rgb {
     (Rgb::splat(rate) - mu_t).max(Rgb::ZERO)
 }
 
-/// Ends a walk of small weight by chance, and makes up for it where it goes on.
+/// Russian roulette for walks of small weight; the weight of a walk that survives compensates for
+/// it.
 #[inline]
 pub(super) fn roulette(weight: &mut Rgb, rng: &mut PathRng) -> ControlFlow<()> {
     roulette_below(weight, ROULETTE_BELOW, rng)

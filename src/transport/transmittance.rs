@@ -1,4 +1,4 @@
-//! Transmittance as far as one likes, estimated along the way: unbiased at every point.
+//! Transmittance along a ray, estimated progressively: unbiased at every point.
 //!
 //! The optical distance τ is estimated by combs, each of which reads μ_t at one jittered place in
 //! each unit of a multiple of the majorants' optical distance, and so errs little. T = exp(−τ) is
@@ -8,7 +8,7 @@
 //! average over all choices of pivot and factors, a U-statistic, comes as well). Two combs nearly
 //! do, and the higher terms are left to roulette.
 //!
-//! The series is good for small errors only. So the way is cut into blocks of a fixed optical
+//! The series is good for small errors only. So the ray is cut into blocks of a fixed optical
 //! distance of the majorants, with combs of their own: the transmittances of blocks multiply, and
 //! in each the terms fall fast whatever the medium.
 
@@ -60,7 +60,7 @@ impl Comb {
     }
 }
 
-/// Transmittance of the way so far.
+/// Transmittance of the ray so far.
 pub(super) struct Transmittance {
     /// The combs of the present block, each with its optical distance in it.
     combs: SmallVec<[(Comb, Rgb); 6]>,
@@ -75,17 +75,17 @@ pub(super) struct Transmittance {
 }
 
 impl Transmittance {
-    /// At the beginning of a way, of which the first two combs are jittered by `jitters`.
+    /// Starts at the beginning of a ray; `jitters` are those of the first two combs.
     pub(super) fn new(reads_per_depth: f32, jitters: [f32; 2], rng: &mut PathRng) -> Self {
-        let mut way = Self {
+        let mut estimate = Self {
             combs: SmallVec::new(),
             reads_per_depth,
             depth_left: BLOCK_DEPTH,
             before: Rgb::ONE,
             reads: 0,
         };
-        way.set_combs(jitters, rng);
-        way
+        estimate.set_combs(jitters, rng);
+        estimate
     }
 
     fn set_combs(&mut self, jitters: [f32; 2], rng: &mut PathRng) {
@@ -97,7 +97,7 @@ impl Transmittance {
         }
     }
 
-    /// Moves on from `t` to `end` under a majorant; breaks off where nothing more is seen.
+    /// Moves on from `t` to `end` under a majorant; breaks where the walk ends.
     #[inline]
     pub(super) fn advance(
         &mut self,
@@ -114,7 +114,7 @@ impl Transmittance {
                 self.depth_left -= depth;
                 break;
             }
-            // However short the block, the way goes on.
+            // However short the block, the walk moves on.
             let block_end = (t + self.depth_left / majorant).max(t.next_up()).min(end);
             self.read(medium, majorant, t, block_end);
             self.end_block(rng)?;
@@ -136,7 +136,8 @@ impl Transmittance {
         }
     }
 
-    /// Takes the block as passed and begins the next; what is behind much matters less.
+    /// Ends the block and begins the next, with fewer reads, as segments behind many others matter
+    /// less.
     fn end_block(&mut self, rng: &mut PathRng) -> ControlFlow<()> {
         self.before *= self.of_block();
         self.depth_left = BLOCK_DEPTH;

@@ -1,5 +1,5 @@
-//! A vertex of a path, on a surface or in a volume, behind one face: a value and a density for a
-//! direction, and a sample of it.
+//! A vertex of a path, on a surface or in a volume, behind one interface: evaluation, density and
+//! sampling of directions.
 
 use std::f32::consts::PI;
 
@@ -11,13 +11,13 @@ use crate::sampling::guiding_mixture::GuidingMixture;
 use crate::surface::{Bsdf, Hit, Intersection};
 use crate::volume::phase::PhaseMix;
 
-/// Share of a guess at a vertex's value that is the same for all directions.
+/// Share of a vertex's rough value that is the same for all directions.
 const SHARE_OF_EVEN: f32 = 0.2;
 
-/// A place where a path turns.
+/// A vertex of a path: a scattering event or a reflection.
 #[derive(Clone, Debug)]
 pub struct Vertex {
-    /// Where it is.
+    /// Position in world space.
     pub position: Vec3A,
     kind: VertexKind,
 }
@@ -35,35 +35,35 @@ pub struct DirectionSample {
     pub direction: Vec3A,
     /// Value over density.
     pub weight: Rgb,
-    /// Density over solid angle of chance alone.
+    /// Density over solid angle of BSDF or phase sampling alone, 1/sr.
     pub pdf_solid_angle: f32,
-    /// How many times as often as by chance alone it is drawn.
+    /// Ratio of the mixture density with guiding to that of BSDF or phase sampling alone.
     pub guiding_ratio: f32,
 }
 
 impl Vertex {
-    /// On the surface at the end of `ray`; `None` on black ones.
+    /// A vertex on the surface at the end of `ray`; `None` for black surfaces.
     pub fn reflecting(end: &Intersection, ray: &Ray) -> Option<Self> {
         let bsdf = || Bsdf::new(end.surface.material, end.hit.normal, -ray.direction);
         end.surface.reflects().then(|| Self::surface(&end.hit, bsdf()))
     }
 
-    /// A scattering event of a path that came along the unit `forward`.
+    /// A vertex in a volume, of a path with the unit direction `forward` before it.
     pub fn volume(position: Vec3A, forward: Vec3A, phase: PhaseMix) -> Self {
         Self { position, kind: VertexKind::Volume { phase, forward } }
     }
 
-    /// A reflection.
+    /// A vertex on a surface.
     pub fn surface(hit: &Hit, bsdf: Bsdf) -> Self {
         Self { position: hit.point, kind: VertexKind::Surface { bsdf, offset: hit.offset() } }
     }
 
-    /// Whether it lies on a surface.
+    /// Whether the vertex lies on a surface.
     pub fn is_surface(&self) -> bool {
         matches!(self.kind, VertexKind::Surface { .. })
     }
 
-    /// Whether it sends light everywhere, as all but metals do.
+    /// Whether the vertex scatters into all directions, as all but metals do.
     pub fn is_broad(&self) -> bool {
         match &self.kind {
             VertexKind::Volume { .. } => true,
@@ -80,8 +80,8 @@ impl Vertex {
         }
     }
 
-    /// A guess at how much of the light from around the unit `direction` goes on along the path;
-    /// above zero, since a light is more than its middle.
+    /// A rough estimate of the share of light from around the unit `direction` that goes on along
+    /// the path; above zero, since a light is more than its middle.
     pub fn rough_value(&self, direction: Vec3A) -> f32 {
         const EVEN: f32 = SHARE_OF_EVEN / (4.0 * PI);
         EVEN + (1.0 - SHARE_OF_EVEN) * mean(self.eval(direction).0)
@@ -105,8 +105,8 @@ impl Vertex {
     }
 
     /// [`Vertex::sample`], or one of the directions of `guiding` with their shares; the weight is
-    /// over the mixture of all. The density is still that of [`Vertex::sample`]: MIS with looks at
-    /// lights is by that alone, and as those do the same the weights of both sum to one.
+    /// over the mixture of all. The density is still that of [`Vertex::sample`]: MIS with light
+    /// samples is by that alone, and as those do the same the weights of both sum to one.
     pub fn sample_guided(
         &self,
         guiding: &GuidingMixture,
@@ -138,7 +138,8 @@ impl Vertex {
         Ray::new(self.receiver().position, direction)
     }
 
-    /// Where light is wanted: the origin of every ray that leaves, and the side it leaves from.
+    /// Receiver at the vertex for light samples: the origin of every ray that leaves, and the side
+    /// it leaves from.
     pub fn receiver(&self) -> Receiver {
         match &self.kind {
             VertexKind::Volume { .. } => Receiver { position: self.position, normal: None },

@@ -1,23 +1,24 @@
-//! The weight window: a path that is thought to bring much more than a flight of its pixel does
-//! goes on several times, one that brings much less plays roulette (Vorba and Křivánek 2016,
+//! The weight window: a path that is expected to contribute much more than a flight of its pixel is
+//! split, one that contributes much less meets Russian roulette (Vorba and Křivánek 2016,
 //! *Adjoint-Driven Russian Roulette and Splitting in Light Transport Simulation*).
 //!
-//! Guides draw from mixtures, and each draw adds to the spread of a path's weight; the window takes
-//! it back before it compounds. What a path is thought to bring comes from the probes, fixed before
-//! the path. Unbiased whatever they think: copies times their factor is 1 on average.
+//! Guides draw from mixtures, and each draw adds to the spread of a path's weight; the window
+//! reduces it before it compounds. The expected contribution of a path comes from the probes, fixed
+//! before the path. Unbiased whatever they estimate: splits times their factor is 1 on average.
 
 use crate::math::PathRng;
 
-/// Values, relative to what a flight should bring, between which a path simply goes on.
+/// Values, relative to the expected contribution of a flight, between which a path simply goes on.
 const WINDOW: [f32; 2] = [0.33, 1.67];
-/// Most copies of a path at one vertex.
-const MOST_COPIES: f32 = 8.0;
-/// Least chance to go on: probes know little of places that are brighter than what is around them.
+/// Most splits of a path at one vertex.
+const MOST_SPLITS: f32 = 8.0;
+/// Least survival probability: probes underestimate places that are brighter than their
+/// surroundings.
 const LEAST_SURVIVAL: f32 = 0.3;
-/// How deep splits may nest, each on the stack.
+/// Most nested splits, each on the stack.
 pub(super) const MOST_NESTED: u32 = 24;
 
-/// How often a path goes on from a vertex, and the factor of its throughput each time.
+/// Number of continuations of a path from a vertex, and the factor of the throughput of each.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Splitting {
     pub(super) count: u32,
@@ -25,12 +26,12 @@ pub(super) struct Splitting {
 }
 
 impl Splitting {
-    /// Of a path of `value`, which ends by roulette only if `brightness` says it is dim as well:
-    /// its throughput relative to one worth keeping. Long bright paths in white media are many, and
-    /// what they bring the probes tell but roughly.
+    /// Draws the splitting of a path of `value`, which ends by roulette only if it is dim as well:
+    /// `brightness` is its throughput relative to one worth keeping. Long bright paths in white
+    /// media are many, and the probes estimate their contribution only roughly.
     pub(super) fn draw(value: f32, brightness: f32, may_split: bool, rng: &mut PathRng) -> Self {
         if value > WINDOW[1] && may_split {
-            let wanted = value.min(MOST_COPIES);
+            let wanted = value.min(MOST_SPLITS);
             return Self { count: (wanted + rng.uniform()) as u32, factor: 1.0 / wanted };
         }
         let survival = (value / WINDOW[0]).max(brightness).clamp(LEAST_SURVIVAL, 1.0);
@@ -47,7 +48,7 @@ mod tests {
 
     use super::*;
 
-    /// Copies times factor is 1 on average, within four standard errors; whatever the value.
+    /// Splits times factor is 1 on average, within four standard errors; whatever the value.
     #[test]
     fn nothing_is_lost_or_gained() {
         const DRAWS: u32 = 100_000;
@@ -57,9 +58,9 @@ mod tests {
                 let (mut sum, mut squares) = (0.0, 0.0);
                 let mut rng = PathRng::new(0, UVec2::new(index as u32, 0), 0);
                 for _ in 0..DRAWS {
-                    let copies = Splitting::draw(value, brightness, may_split, &mut rng);
-                    assert!(copies.count <= 1 || may_split);
-                    let found = f64::from(copies.count) * f64::from(copies.factor);
+                    let splitting = Splitting::draw(value, brightness, may_split, &mut rng);
+                    assert!(splitting.count <= 1 || may_split);
+                    let found = f64::from(splitting.count) * f64::from(splitting.factor);
                     sum += found;
                     squares += found * found;
                 }

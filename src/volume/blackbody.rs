@@ -4,8 +4,8 @@ use std::sync::LazyLock;
 
 use crate::math::{Rgb, luminance};
 
-/// Spacing of the table in kelvin. Between its entries the color is linear by definition, so
-/// that every strategy sees the same one.
+/// Spacing of the table in kelvin. Between its entries the color is linear by definition, so that
+/// it is the same for every strategy.
 const STEP: f32 = 10.0;
 /// Entries of the table; it ends at 40 950 K, where the color no longer changes.
 const ENTRIES: usize = 4096;

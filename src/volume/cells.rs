@@ -32,14 +32,14 @@ impl CellGrid {
         Self { bounds, origin, cell_size, dims }
     }
 
-    /// The cells from `low` to `high`, both included.
+    /// The grid cropped to the cells from `low` to `high`, both included.
     pub fn cropped(&self, low: IVec3, high: IVec3) -> Self {
         let bounds = self.clipped(low).union(&self.clipped(high));
         let origin = self.origin + low.as_vec3a() * self.cell_size;
         Self { bounds, origin, cell_size: self.cell_size, dims: high - low + IVec3::ONE }
     }
 
-    /// The box they cover.
+    /// The box that the cells cover.
     pub fn bounds(&self) -> &Aabb {
         &self.bounds
     }
@@ -54,12 +54,12 @@ impl CellGrid {
         self.dims.as_usizevec3().element_product()
     }
 
-    /// Whether there are none.
+    /// Whether the grid has no cells.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// The cell of an index.
+    /// The cell with an index.
     pub fn cell(&self, index: usize) -> IVec3 {
         let index = index as i32;
         IVec3::new(
@@ -80,7 +80,7 @@ impl CellGrid {
         cell.clamp(IVec3::ZERO, (self.dims - IVec3::ONE).max(IVec3::ZERO))
     }
 
-    /// The whole of a cell.
+    /// Box of a whole cell, even beyond the grid's box.
     pub fn whole(&self, cell: IVec3) -> Aabb {
         let low = self.origin + cell.as_vec3a() * self.cell_size;
         Aabb::new(low, low + self.cell_size)
@@ -123,7 +123,7 @@ impl CellGrid {
     }
 }
 
-/// The way of one ray through the cells of a [`CellGrid`] (Amanatides and Woo 1987).
+/// The walk of one ray through the cells of a [`CellGrid`] (Amanatides and Woo 1987).
 #[derive(Clone, Copy, Debug)]
 pub struct CellWalk {
     t: f32,
@@ -134,18 +134,19 @@ pub struct CellWalk {
     cells_left: [i32; 3],
     stride: [isize; 3],
     index: usize,
-    /// The cell of the stretch found last.
+    /// Index of the cell of the last segment.
     found: usize,
 }
 
 impl CellWalk {
-    /// The cell of the stretch that [`CellWalk::next_where`] gave last.
+    /// Index of the cell of the segment that [`CellWalk::next_where`] returned last.
     #[inline]
     pub fn found(&self) -> usize {
         self.found
     }
 
-    /// The next stretch `(t0, t1)` in a cell for whose index `value` has one, with that value.
+    /// The next segment `(t0, t1)` in a cell for whose index `value` returns a value, with that
+    /// value.
     #[inline]
     pub fn next_where<T>(&mut self, value: impl Fn(usize) -> Option<T>) -> Option<(f32, f32, T)> {
         while self.t < self.t_end {

@@ -1,4 +1,4 @@
-//! What a volume radiates: ε, radiance per length, in every mode of the scene file.
+//! Emission ε of a volume, radiance per length, in every mode of the scene file.
 
 use glam::Vec3A;
 
@@ -11,13 +11,13 @@ use crate::math::{Aabb, Rgb, luminance};
 /// The emission of a volume at each of its points. All modes are formed after interpolation.
 #[derive(Clone, Debug)]
 pub enum Emission {
-    /// Does not emit.
+    /// No emission.
     None,
     /// ε = scale · value, whatever density and albedo are.
     Field {
-        /// The values.
+        /// Field of the values.
         field: RgbField,
-        /// Their multiplier.
+        /// Multiplier of the values.
         scale: Rgb,
     },
     /// ε = μ_a · L_e: in thermal equilibrium with its absorption.
@@ -44,7 +44,7 @@ pub struct Blackbody {
     pub intensity: Rgb,
     /// Multiply by the density field's value.
     pub times_density: bool,
-    /// With a reference temperature T₀, multiply by (T/T₀)⁴.
+    /// Reference temperature T₀ in kelvin, with which the emission is multiplied by (T/T₀)⁴.
     pub t4_reference: Option<f32>,
 }
 
@@ -87,7 +87,7 @@ impl Emission {
         }
     }
 
-    /// Whether [`Emission::at`] makes use of the absorption or the density it is given.
+    /// Whether [`Emission::at`] depends on the absorption or the density that it is given.
     #[inline]
     pub fn needs_density(&self) -> bool {
         match self {
@@ -98,7 +98,7 @@ impl Emission {
         }
     }
 
-    /// Whether it may be above zero anywhere.
+    /// Whether the emission may be above zero anywhere.
     pub fn is_some(&self) -> bool {
         !matches!(self, Self::None)
     }

@@ -19,18 +19,18 @@ use crate::{
     sampling::warp::spherical,
 };
 
-/// Points of a cell at which the emission is read. They form a rank-1 lattice: each axis sees them
-/// at as many different heights, the outermost 1/32 from the faces.
+/// Points of a cell at which the emission is read. They form a rank-1 lattice with as many
+/// different coordinates on each axis, the outermost 1/32 from the faces.
 const POINTS: i32 = 16;
 /// Generators of the lattice, the first of them 1.
 const GENERATORS: [i32; 3] = [1, 3, 7];
-/// Share of its upper bound that every cell gets beside what was read: a spark between the points
-/// must not be a surprise. That of one voxel in a cell of 4³ has a mean of 1/64 of its peak.
+/// Share of its upper bound that every cell gets beside the emission read: sparks between the
+/// points must not be missed. A spark of one voxel in a cell of 4³ has a mean of 1/64 of its peak.
 const SHARE_OF_BOUND: f64 = 1.0 / 64.0;
 /// Smallest density relative to the largest, so that single precision holds both.
 const FAINTEST: f64 = 1e-30;
 
-/// Where a volume's emitted power comes from: a density over its own space.
+/// Distribution of a volume's emitted power: a density over its own space.
 #[derive(Clone, Debug)]
 pub struct Energy {
     bounds: Aabb,
@@ -41,7 +41,7 @@ pub struct Energy {
 
 #[derive(Clone, Debug)]
 enum Support {
-    /// The same density all over a region.
+    /// Uniform density over a region.
     Region(Region, f64),
     /// One density per cell.
     Cells(Cells),
@@ -61,8 +61,8 @@ struct Cells {
 }
 
 impl Energy {
-    /// The distribution over a region that emits `emission`, lum ε, throughout; `None` if it emits nothing or has no
-    /// finite volume.
+    /// The distribution over a region that emits `emission`, lum ε, throughout; `None` without
+    /// emission or finite volume.
     pub(super) fn uniform(region: Region, emission: f32) -> Option<Self> {
         let volume = match region {
             Region::Box(bounds) => volume_of(&bounds),
@@ -79,7 +79,8 @@ impl Energy {
         })
     }
 
-    /// The distribution over a volume whose `emission`, lum ε, is bounded by `majorants`; `None` if it emits nothing.
+    /// The distribution over a volume whose `emission`, lum ε, is bounded by `majorants`; `None`
+    /// without emission.
     ///
     /// A cell's density is the mean of its emission and a small share of its upper bound, zero
     /// only where the upper bound is.
@@ -129,7 +130,7 @@ impl Energy {
         finite(self.total)
     }
 
-    /// A box around what emits, in the volume's space.
+    /// A box around the emission, in the volume's space.
     pub fn bounds(&self) -> Aabb {
         self.bounds
     }
@@ -200,7 +201,7 @@ impl Energy {
 /// A cell that emits.
 struct Cell {
     index: usize,
-    /// Its place in the order.
+    /// Position of the cell in the order along a Morton curve.
     order: u64,
     volume: f64,
     /// Mean emission, with its share of the upper bound.
@@ -208,8 +209,8 @@ struct Cell {
 }
 
 impl Cells {
-    /// The distribution, and the total of emission times volume. What counts of the emissions is
-    /// their ratio, so that neither huge nor tiny ones leave the range of the numbers.
+    /// The distribution, and the total of emission times volume. Only the ratio of the emissions
+    /// matters, so that neither huge nor tiny ones leave the range of the numbers.
     fn new(grid: CellGrid, emitting: &[Cell]) -> Option<(Self, f64)> {
         let brightest = emitting.iter().fold(0.0, |most: f64, cell| most.max(cell.emission));
         let mut relative = vec![0.0; grid.len()];
@@ -287,12 +288,12 @@ fn mean_over(bounds: &Aabb, emission: &impl Fn(Vec3A) -> f32) -> f64 {
     sum / f64::from(POINTS)
 }
 
-/// A value that sums and quotients stay numbers with: none is 0, infinity the largest.
+/// Finite magnitude of a value, for sums and quotients: NaN becomes 0, infinity the largest number.
 fn magnitude(value: f32) -> f64 {
     if value.is_nan() { 0.0 } else { f64::from(value.clamp(0.0, f32::MAX)) }
 }
 
-/// In single precision, neither infinite nor rounded to zero where it is above zero.
+/// Rounds a value to single precision, neither to infinity nor to zero where it is above zero.
 pub(super) fn finite(value: f64) -> f32 {
     if value > 0.0 {
         value.clamp(f64::from(f32::MIN_POSITIVE), f64::from(f32::MAX)) as f32
@@ -301,7 +302,7 @@ pub(super) fn finite(value: f64) -> f32 {
     }
 }
 
-/// The place of a cell on a Morton curve, its coordinates' bits interleaved.
+/// Position of a cell on a Morton curve, its coordinates' bits interleaved.
 fn morton(cell: IVec3) -> u64 {
     let spread = |coordinate: i32| {
         let mut bits = u64::from(coordinate as u32 & 0x1f_ffff);

@@ -10,13 +10,13 @@ use super::{
 };
 use crate::math::{Aabb, Rgb};
 
-/// A grid seen from the space of a volume whose first grid may be another one.
+/// A grid placed in the space of a volume whose first grid may be another one.
 #[derive(Clone, Debug)]
 pub struct GridField<V: Voxel> {
     grid: Arc<SparseGrid<V>>,
-    /// `None` where the volume's space is the grid's own index space.
+    /// Transform to the grid's index space; `None` where that is the volume's own space.
     grid_from_local: Option<Affine3A>,
-    /// Where the grid ends, in its index space, whatever other grids the volume has.
+    /// Box of the grid in its index space, whatever other grids the volume has.
     support: Aabb,
 }
 
@@ -41,7 +41,7 @@ impl<V: Voxel> GridField<V> {
         self.grid.sample(index)
     }
 
-    /// Bounds of the values over a box of the volume's space; each holds for all of it.
+    /// Lower and upper bound of the values over a box of the volume's space.
     pub fn range(&self, local: &Aabb) -> (V, V) {
         let index = match &self.grid_from_local {
             None => *local,
@@ -70,7 +70,7 @@ pub fn grid_support<V: Voxel>(grid: &SparseGrid<V>) -> Aabb {
 /// A scalar at each point of a volume.
 #[derive(Clone, Debug)]
 pub enum ScalarField {
-    /// The same everywhere.
+    /// The same value everywhere.
     Constant(f32),
     /// A stored grid.
     Grid(GridField<f32>),
@@ -106,7 +106,7 @@ impl ScalarField {
 /// A color at each point of a volume.
 #[derive(Clone, Debug)]
 pub enum RgbField {
-    /// The same everywhere.
+    /// The same color everywhere.
     Constant(Rgb),
     /// A scalar field times a color.
     Tinted(ScalarField, Rgb),
@@ -125,7 +125,7 @@ impl RgbField {
         }
     }
 
-    /// Whether all channels are the same everywhere, as far as can be told without looking.
+    /// Whether all channels are known to be equal everywhere, without a read of the field.
     #[inline]
     pub fn is_gray(&self) -> bool {
         match self {

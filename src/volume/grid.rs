@@ -2,8 +2,8 @@
 //!
 //! Values are samples at integer positions of *index space*, trilinear in between. They lie in
 //! *bricks* of 8x8x8 cells that carry the first samples of the bricks after them, so that a look-up
-//! touches one brick; the bricks lie in *nodes* of 16x16x16. Where nothing was stored the
-//! background stands.
+//! touches one brick; the bricks lie in *nodes* of 16x16x16. Voxels that were not stored have the
+//! background's value.
 
 mod assemble;
 mod bricks;

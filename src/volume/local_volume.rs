@@ -1,4 +1,4 @@
-//! A volume in its own space: its region, its medium and the bounds of that.
+//! A volume in its own space: its region, its medium and bounds of the coefficients.
 
 use glam::{IVec3, Vec3A};
 
@@ -13,7 +13,8 @@ use super::{
 use crate::error::{Progress, Result, report};
 use crate::math::{Aabb, Rgb, luminance};
 
-/// The properties of a medium. Coefficients are per unit of *world* length, whatever its placement.
+/// The properties of a medium. Coefficients are per unit of *world* length, whatever the volume's
+/// placement.
 #[derive(Clone, Debug)]
 pub struct MediumProperties {
     /// The density field; μ_t = `density_scale` · value.
@@ -22,9 +23,9 @@ pub struct MediumProperties {
     pub density_scale: Rgb,
     /// Single-scattering albedo μ_s / μ_t, 0 to 1.
     pub albedo: RgbField,
-    /// Mean cosine of its Henyey–Greenstein phase function.
+    /// Mean cosine g of the Henyey–Greenstein phase function, −1 to 1.
     pub g: f32,
-    /// The emission.
+    /// Emission of the medium.
     pub emission: Emission,
 }
 
@@ -39,7 +40,7 @@ impl MediumProperties {
         Coefficients { mu_t, mu_s, emission }
     }
 
-    /// Whether it may scatter anywhere, as far as can be told without looking.
+    /// Whether the medium may scatter anywhere, as far as is known without a read of its fields.
     pub fn scatters(&self) -> bool {
         let dark = matches!(self.albedo, RgbField::Constant(albedo) if albedo.max_element() <= 0.0);
         let clear = matches!(self.density, ScalarField::Constant(density) if density <= 0.0);
@@ -75,7 +76,7 @@ impl MediumProperties {
         }
     }
 
-    /// The majorant over a box, and the minorant of the extinction's largest channel.
+    /// Majorant over a box, and minorant of the extinction's largest channel.
     fn bounds_over(&self, local: &Aabb) -> (Majorant, f32) {
         let (least, most) = self.density.range(local);
         let [least, density] = [least, most].map(|density| density.max(0.0));
@@ -116,7 +117,7 @@ pub struct Volume {
 pub enum CoefficientBounds {
     /// The coefficients are the same everywhere, these exactly.
     Uniform(Coefficients, Majorant),
-    /// They vary; bounded by cells.
+    /// The coefficients vary; bounds of each cell.
     Cells(MajorantGrid),
 }
 
@@ -165,22 +166,22 @@ impl Volume {
         })
     }
 
-    /// The region that it takes.
+    /// Region of the volume.
     pub fn region(&self) -> &Region {
         &self.region
     }
 
-    /// Its medium.
+    /// Properties of the volume's medium.
     pub fn properties(&self) -> &MediumProperties {
         &self.properties
     }
 
-    /// The bounds of its coefficients.
+    /// Bounds of the volume's coefficients.
     pub fn bounds(&self) -> &CoefficientBounds {
         &self.bounds
     }
 
-    /// Edge of a voxel in the volume's space, if it has any.
+    /// Edge of a voxel in the volume's space, if any is stored.
     pub fn voxel(&self) -> Option<f32> {
         self.voxel
     }
@@ -190,7 +191,7 @@ impl Volume {
         self.chords
     }
 
-    /// Where its emitted power comes from; `None` where nothing emits and in all of space.
+    /// Distribution of the emitted power; `None` for volumes that don't emit or fill all of space.
     pub fn energy(&self) -> Option<&Energy> {
         self.energy.as_ref()
     }
@@ -198,7 +199,7 @@ impl Volume {
 
 /// Sums the emission at the cells' centers along every row of cells of each axis, and keeps the
 /// largest sum. It only sets the unit of the boost amount, so a coarse sum will do; but sparks
-/// between the centers count too, half a cell long, lest that unit be next to nothing.
+/// between the centers count too, half a cell long, so that the unit does not vanish.
 fn probe_chords(
     cells: &MajorantGrid,
     properties: &MediumProperties,

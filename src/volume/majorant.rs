@@ -14,9 +14,10 @@ const ROUNDING: f32 = 1.0 + 4.0 * f32::EPSILON;
 /// Upper bounds that hold over a region.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Majorant {
-    /// Of the extinction's largest channel, 1/length.
+    /// Upper bound of the extinction's largest channel, 1/length.
     pub mu_t: f32,
-    /// Of the luminance of the emission; zero only where nothing emits.
+    /// Upper bound of the luminance of the emission, radiance per length; zero only where nothing
+    /// emits.
     pub emission: f32,
 }
 
@@ -32,14 +33,15 @@ impl Majorant {
 pub struct MajorantGrid {
     grid: CellGrid,
     cells: Vec<Majorant>,
-    /// Lower bounds of what [`Majorant::mu_t`] is an upper bound of.
+    /// Lower bounds of the extinction's largest channel, for which [`Majorant::mu_t`] is the upper
+    /// bound.
     minorants: Vec<f32>,
 }
 
 impl MajorantGrid {
-    /// Takes `bounds_over` each cell of about `cell_size` inside `bounds`: the majorant there and
-    /// the minorant of the extinction's largest channel. Cell faces lie at multiples of their size,
-    /// so that they can agree with the bricks of a grid.
+    /// Builds the grid from `bounds_over` each cell of about `cell_size` inside `bounds`: the
+    /// majorant there and the minorant of the extinction's largest channel. Cell faces lie at
+    /// multiples of their size, so that they can agree with the bricks of a grid.
     ///
     /// # Errors
     /// [`Error::Cancelled`](crate::error::Error::Cancelled) where `progress` says so.
@@ -72,7 +74,7 @@ impl MajorantGrid {
         &self.cells
     }
 
-    /// The box it covers.
+    /// The box that the cells cover.
     pub fn bounds(&self) -> &Aabb {
         self.grid.bounds()
     }
@@ -82,7 +84,7 @@ impl MajorantGrid {
         self.grid.cell_size()
     }
 
-    /// The minorant of the stretch that [`MajorantGrid::next_occupied`] gave last.
+    /// The minorant of the segment that [`MajorantGrid::next_occupied`] returned last.
     #[inline]
     pub fn minorant(&self, walk: &CellWalk) -> f32 {
         self.minorants[walk.found()]
@@ -101,7 +103,7 @@ impl MajorantGrid {
         self.grid.walk(ray, t0, t1)
     }
 
-    /// The next stretch `(t0, t1)` of a walk with something in it, empty cells passed over.
+    /// The next segment `(t0, t1)` of a walk in cells that are not empty.
     #[inline]
     pub fn next_occupied(&self, walk: &mut CellWalk) -> Option<(f32, f32, Majorant)> {
         walk.next_where(|cell| {

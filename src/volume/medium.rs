@@ -1,5 +1,5 @@
-//! What light transport knows of a medium: coefficients at a point of a ray, and stretches of the
-//! ray with upper bounds. The grids behind them stay out of its sight.
+//! Interface of a medium to light transport: coefficients at a point of a ray, and segments of the
+//! ray with upper bounds. The grids behind them stay hidden.
 
 use crate::math::Rgb;
 
@@ -22,12 +22,12 @@ impl Coefficients {
     }
 }
 
-/// A stretch of a ray over which one set of bounds holds. Stretches without matter are passed over.
+/// A piece of a ray over which one set of bounds holds. Empty pieces are passed over.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Segment {
-    /// Where it begins, as a ray parameter.
+    /// Ray parameter at which the segment begins.
     pub t0: f32,
-    /// Where it ends; may be infinite in a medium without borders.
+    /// Ray parameter at which the segment ends; may be infinite in a medium without borders.
     pub t1: f32,
     /// Upper bound of every channel of μ_t, 1/length. Summed over overlapping volumes.
     pub majorant: f32,
@@ -35,9 +35,10 @@ pub struct Segment {
     /// this rate would be one along that chord. Free of exposure and units. Zero only where
     /// nothing emits.
     pub emission_rate: f32,
-    /// One collision per smallest voxel here, 1/length; 0 where nothing has voxels.
+    /// Rate of one collision per smallest voxel in the segment, 1/length; 0 where nothing has
+    /// voxels.
     pub voxel_rate: f32,
-    /// Whether the coefficients are the same all along it.
+    /// Whether the coefficients are the same all along the segment.
     pub uniform: bool,
     /// Whether μ_t and μ_s are the same in all channels.
     pub gray: bool,

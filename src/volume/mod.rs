@@ -1,4 +1,4 @@
-//! Participating media. Light transport reads `medium` and asks `world`; the rest is behind them.
+//! Participating media. Light transport uses `medium` and `world`; the rest is behind them.
 
 pub mod blackbody;
 pub mod cells;

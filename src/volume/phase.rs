@@ -57,7 +57,7 @@ impl PhaseMix {
         }
     }
 
-    /// Mean cosine of the angle it scatters by.
+    /// Mean cosine of the scattering angle.
     pub fn mean_cosine(&self) -> f32 {
         let (sum, total) = self.lobes.iter().fold((0.0, 0.0), |(sum, total), lobe| {
             let mu_s = mean(lobe.mu_s);

@@ -4,7 +4,7 @@ use glam::{IVec3, Vec3A};
 
 use crate::math::Aabb;
 
-/// How a [`Ramp`] runs along its axis.
+/// Function of a [`Ramp`] along its axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RampKind {
     /// a + b · coordinate.
@@ -26,9 +26,9 @@ pub enum RampKind {
 /// A gradient along one axis, its coordinate measured from the low face; never below zero.
 #[derive(Clone, Copy, Debug)]
 pub struct Ramp {
-    /// 0, 1 or 2.
+    /// Index of the axis: 0, 1 or 2.
     pub axis: usize,
-    /// Where the coordinate is zero.
+    /// Position on the axis at which the coordinate is zero.
     pub low: f32,
     /// The formula.
     pub kind: RampKind,
@@ -62,9 +62,9 @@ pub struct Noise {
     pub frequency: f32,
     /// Number of octaves, 1 to 16.
     pub octaves: u32,
-    /// 1 leaves the noise as it is, larger values push it towards 0 and 1.
+    /// Contrast factor: 1 leaves the noise as it is, larger values push it towards 0 and 1.
     pub contrast: f32,
-    /// Chooses the lattice.
+    /// Seed of the lattice.
     pub seed: u32,
 }
 
@@ -110,7 +110,7 @@ impl Noise {
 
     /// Within a lattice cell the noise is affine in the eased coordinate of each axis, so that its
     /// extremes over a box lie at the box's corners. A box wider than a few cells meets nearly
-    /// every value; looking would cost much and tell little.
+    /// every value; to bound it tightly would cost much and gain little.
     fn lattice_range(&self, octave: u32, min: Vec3A, max: Vec3A) -> (f32, f32) {
         const WIDEST: i32 = 3;
         let (low, high) = (min.floor().as_ivec3(), max.floor().as_ivec3());
@@ -159,7 +159,7 @@ struct Octave {
 
 /// A cell of a random lattice.
 struct LatticeCell {
-    /// Its values by x, y and z.
+    /// Values at the cell's corners by x, y and z.
     corners: [[[f32; 2]; 2]; 2],
 }
 
@@ -214,7 +214,8 @@ mod tests {
         assert!(narrower > 150, "{narrower} of 300 ranges narrower than the whole");
     }
 
-    /// Against the lattice hashed corner by corner: pictures must not change from version to version.
+    /// Agrees with the lattice hashed corner by corner: pictures must not change from version to
+    /// version.
     #[test]
     fn noise_interpolates_a_lattice_of_hashes() {
         let noise = Noise { frequency: 1.7, octaves: 3, contrast: 1.0, seed: 7 };

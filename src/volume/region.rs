@@ -1,17 +1,17 @@
-//! The region of space that a volume takes.
+//! Regions of space that volumes fill.
 
 use glam::Vec3A;
 
 use crate::math::{Aabb, Ray};
 
-/// Where a volume is, in its own space. Its borders are sharp.
+/// Region that a volume fills in its own space, with sharp borders.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Region {
     /// A box.
     Box(Aabb),
     /// A sphere about the origin.
     Sphere {
-        /// Its radius.
+        /// Radius of the sphere.
         radius: f32,
     },
     /// All of space.
@@ -19,7 +19,7 @@ pub enum Region {
 }
 
 impl Region {
-    /// The smallest box around it; infinite for [`Region::Everywhere`].
+    /// Smallest box around the region; infinite for [`Region::Everywhere`].
     pub fn bounds(&self) -> Aabb {
         match self {
             Self::Box(bounds) => *bounds,

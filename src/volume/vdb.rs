@@ -8,10 +8,10 @@
 //! tree          topology and tiles first, then the values of all leaves
 //! ```
 //!
-//! [`Directory`] lists what a file holds without touching a voxel and loads single grids;
-//! [`read`] loads everything. Float, double, vec3s and vec3d grids of the usual 5-4-3 tree with
-//! an affine transform are loaded, as full or half floats, compressed by ZIP, Blosc, active masks
-//! or not at all. Others are listed with the reason why they are not.
+//! [`Directory`] lists what a file holds without touching a voxel and loads single grids; [`read`]
+//! loads everything. Float, double, vec3s and vec3d grids of the usual 5-4-3 tree with an affine
+//! transform are loaded, as full or half floats, compressed by ZIP, Blosc, active masks or not at
+//! all. Other grids are listed with the reason why they are not loaded.
 
 mod blosc;
 mod compression;
@@ -39,7 +39,7 @@ use crate::error::{Progress, Result};
 /// Loads a file with all its grids.
 ///
 /// # Errors
-/// As [`Directory::open`] and [`Directory::load`].
+/// Same errors as [`Directory::open`] and [`Directory::load`].
 pub fn read(path: impl AsRef<Path>, progress: Progress) -> Result<VdbFile> {
     Directory::open(path, progress)?.load_all(progress)
 }

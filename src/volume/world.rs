@@ -1,6 +1,6 @@
 //! All volumes of a scene behind one majorant structure: a hierarchy over the placed volumes gives
 //! each one's interval along a ray, each walks its own cells inside, and where they overlap the
-//! stretches are cut at every border and the majorants added.
+//! segments are cut at every border and the majorants added.
 
 mod along;
 mod emissive;
@@ -59,8 +59,8 @@ impl World {
         bounds.filter(|bounds| bounds.size().is_finite()).reduce(|all, one| all.union(&one))
     }
 
-    /// Whether both have the same volumes in the same places, as scenes built from one cache do
-    /// while only other things change.
+    /// Whether both worlds have the same volumes in the same places, as scenes built from one cache
+    /// do while only other things change.
     pub fn has_volumes_of(&self, other: &Self) -> bool {
         let same = |(a, b): (&Instance, &Instance)| {
             Arc::ptr_eq(&a.volume, &b.volume) && a.world_from_local == b.world_from_local
@@ -88,12 +88,13 @@ impl World {
         MediumRay::new(&self.instances, ray, entries)
     }
 
-    /// Whether anything emits at all.
+    /// Whether any volume emits.
     pub fn emits(&self) -> bool {
         self.emissive.any()
     }
 
-    /// Whether anything emits where no sampled point lies: media without borders.
+    /// Whether anything emits outside of the volumes that are sampled as lights: media without
+    /// borders.
     pub fn emits_beyond_lights(&self) -> bool {
         self.emissive.has_unsampled()
     }
@@ -103,8 +104,9 @@ impl World {
         self.emissive.indices()
     }
 
-    /// Calls `visit` with each emissive instance that sampling can find along the whole of `ray`,
-    /// whose direction is a unit vector, and its [`Instance::emission_pdf_along`], above zero.
+    /// Calls `visit` with each emissive instance that light samples can reach along the whole of
+    /// `ray`, whose direction is a unit vector, and its [`Instance::emission_pdf_along`], above
+    /// zero.
     pub fn emissive_along(&self, ray: &Ray, visit: impl FnMut(u32, f32)) {
         self.emissive.along(&self.instances, ray, visit);
     }
@@ -118,7 +120,7 @@ impl World {
         }
     }
 
-    /// Extinction and scattering at a point; `None` where there is nothing.
+    /// Extinction and scattering at a point; `None` in empty space.
     pub fn matter_at(&self, point: Vec3A) -> Option<Matter> {
         let mut medium = self.around(point, Vec3A::X);
         let segment = medium.next_segment()?;
@@ -137,12 +139,12 @@ impl World {
 /// Extinction and scattering at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Matter {
-    /// Upper bound of μ_t around it, 1/length.
+    /// Upper bound of μ_t around the point, 1/length.
     pub majorant: f32,
-    /// Extinction, 1/length.
+    /// Extinction μ_t, 1/length.
     pub mu_t: Rgb,
-    /// Scattering, 1/length.
+    /// Scattering μ_s, 1/length.
     pub mu_s: Rgb,
-    /// Mean cosine of the scattering.
+    /// Mean cosine of the phase function.
     pub g: f32,
 }

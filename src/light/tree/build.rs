@@ -9,19 +9,19 @@ use crate::math::Aabb;
 
 /// Bins per axis that splits are tried between.
 const BINS: usize = 16;
-/// Beyond this depth nodes are halved by count, so that a trail of 64 turns always suffices.
+/// Beyond this depth nodes are halved by count, so that a trail of 64 choices always suffices.
 const DEEPEST_BY_COST: u32 = 32;
 /// Coordinates beyond this would leave single precision when squared.
 const FARTHEST: f32 = 1e18;
 /// Smallest intensity relative to the brightest, so that single precision holds both.
 const FAINTEST: f64 = 1e-30;
 
-/// An emitter that is given its place.
+/// An emitter while it is placed in the tree.
 struct PlacedEmitter {
     index: u32,
     bounds: Aabb,
     center: Vec3A,
-    /// Relative to the brightest.
+    /// Intensity relative to the brightest emitter's.
     intensity: f64,
     cone: Cone,
 }
@@ -32,7 +32,7 @@ struct EmitterSummary {
     count: usize,
     bounds: Aabb,
     intensity: f64,
-    /// `None` without emitters.
+    /// Directions of emission; `None` without emitters.
     cone: Option<Cone>,
 }
 
@@ -81,7 +81,8 @@ fn item(index: u32, emitter: &Emitter, brightest: f32) -> Option<PlacedEmitter> 
     })
 }
 
-/// Fills the node `at` with `items` and all below it. `trail` holds the `depth` turns to it.
+/// Fills the node `at` with `items` and all below it. `trail` holds the `depth` choices on the path
+/// to it.
 fn split(tree: &mut LightTree, at: usize, items: &mut [PlacedEmitter], depth: u32, trail: u64) {
     if let [only] = items {
         tree.nodes[at].kind = NodeKind::Leaf(only.index);
@@ -122,7 +123,7 @@ fn least_distance(all: &EmitterSummary) -> f32 {
     (0.15 * size[1]).max(0.25 * size[2] / all.count as f32)
 }
 
-/// Two halves along the longest axis.
+/// Halves a set of emitters along the longest axis.
 fn halve(items: &mut [PlacedEmitter]) -> usize {
     let centers = items.iter().fold(Aabb::EMPTY, |b, i| b.union(&Aabb::new(i.center, i.center)));
     let axis = centers.size().max_position();

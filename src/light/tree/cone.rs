@@ -13,14 +13,14 @@ const SLACK: f32 = 1e-3;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cone {
     axis: Vec3A,
-    /// π or more: every direction.
+    /// Half angle, radians; π or more for every direction.
     half_angle: f32,
 }
 
 impl Cone {
     pub(super) const EVERYWHERE: Self = Self { axis: Vec3A::Z, half_angle: PI };
 
-    /// The cone about a unit `axis`; what is no cone goes everywhere.
+    /// The cone about a unit `axis`; invalid cones become the whole sphere.
     pub(super) fn new(axis: Vec3A, cos_half_angle: f32) -> Self {
         if !(axis.is_finite() && cos_half_angle.is_finite()) {
             return Self::EVERYWHERE;
@@ -32,7 +32,7 @@ impl Cone {
         self.half_angle >= PI
     }
 
-    /// A cone around both.
+    /// A cone that holds both.
     pub(super) fn union(&self, other: &Self) -> Self {
         let (wide, narrow) =
             if self.half_angle >= other.half_angle { (self, other) } else { (other, self) };
@@ -41,7 +41,7 @@ impl Cone {
             return *wide;
         }
         let half_angle = 0.5 * (wide.half_angle + between + narrow.half_angle);
-        // The axis turns from the wide one's towards the narrow one's.
+        // The axis rotates from the wide one's towards the narrow one's.
         let across = (narrow.axis - wide.axis.dot(narrow.axis) * wide.axis).normalize_or_zero();
         if half_angle >= PI || across == Vec3A::ZERO {
             return Self::EVERYWHERE;
@@ -50,7 +50,7 @@ impl Cone {
         Self { axis: (cos * wide.axis + sin * across).normalize(), half_angle }
     }
 
-    /// Share of the sphere of directions that it covers, above zero.
+    /// Share of the sphere of directions that the cone covers, above zero.
     pub(super) fn share(&self) -> f32 {
         0.5 * (1.0 - self.half_angle.min(PI).cos()) + 0.01
     }

@@ -1,4 +1,4 @@
-//! The nodes of a light hierarchy, and how much light the emitters below one may bring.
+//! The nodes of a light hierarchy, and the estimated irradiance of the emitters below one.
 
 use glam::Vec3A;
 
@@ -17,8 +17,8 @@ const HORIZON_SLACK: f32 = 1e-6;
 pub struct LightTree {
     /// The root first, children of a node side by side.
     pub(super) nodes: Vec<LightNode>,
-    /// For each emitter the turns from the root, the first in the lowest bit, 1 for the second
-    /// child; `None` for those that are not in the tree.
+    /// For each emitter the choices on the path from the root, the first in the lowest bit, 1 for
+    /// the second child; `None` for those that are not in the tree.
     pub(super) trails: Vec<Option<u64>>,
     /// For each emitter its node; the root for those that are not in the tree.
     pub(super) leaves: Vec<u32>,
@@ -30,7 +30,7 @@ pub struct LightTree {
 #[derive(Clone, Debug)]
 pub(super) struct LightNode {
     pub(super) bounds: Aabb,
-    /// Sum over its emitters, relative to the brightest of the tree.
+    /// Sum of the intensities of its emitters, relative to the brightest of the tree.
     pub(super) intensity: f32,
     /// Square of the distance below which the nearest emitter is not expected.
     pub(super) least_squared: f32,
@@ -51,8 +51,8 @@ impl LightNode {
     /// Rough irradiance of its emitters at the receiver, all facing it, relative to the brightest
     /// of the tree.
     ///
-    /// For 1/d² stands 1/(nearest · farthest distance of the box), which is its mean along a line
-    /// towards the receiver and within π/2 of it along one across.
+    /// 1/d² is replaced by 1/(nearest · farthest distance of the box), which is its mean along a
+    /// line towards the receiver and within π/2 of it along one across.
     #[inline]
     pub(super) fn importance(&self, to: &Receiver) -> f64 {
         let (low, high) = (self.bounds.min - to.position, self.bounds.max - to.position);

@@ -37,7 +37,7 @@ fn receivers(count: usize) -> Vec<Receiver> {
         .collect()
 }
 
-/// What light an emitter really can bring: from a few points of its box.
+/// Whether an emitter really contributes, from a few points of its box.
 fn contributes(emitter: &Emitter, to: &Receiver) -> bool {
     let corners = emitter.bounds.corners();
     corners.into_iter().chain([emitter.bounds.center()]).any(|from| {

@@ -2,38 +2,39 @@
 
 use crate::math::Rgb;
 
-/// The share of the looks along a camera ray that any other ray gets.
-const OTHER_LOOKS: f32 = 0.25;
+/// Collisions or reads along any other ray, relative to those along a camera ray.
+const OTHER_SHARE: f32 = 0.25;
 
-/// The emission of a ray and what it is seen through, as an emission walk estimates them.
+/// Emission and transmittance of a whole ray, as an emission walk estimates them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayEmission {
-    /// ∫ T ε dt along the ray.
+    /// ∫ T ε dt along the ray, radiance.
     pub emission: Rgb,
-    /// T to the ray's end.
+    /// Transmittance T to the ray's end.
     pub transmittance: Rgb,
-    /// Tentative collisions, or places looked at, on the way.
+    /// Tentative collisions, or reads of the medium, along the ray.
     pub collisions: u32,
 }
 
-/// Which ray of a path the emission is gathered along.
+/// Kind of a ray that emission is gathered along.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RayKind {
     /// A camera ray.
     Camera,
-    /// A ray that scattering or reflection sent.
+    /// A ray after scattering or reflection.
     Scattered,
     /// A ray to a light, for next-event estimation.
     Light,
 }
 
 impl RayKind {
-    /// The part of `looks` that a ray of this kind is worth. Camera rays are looked at closely; any
-    /// other ray is one of many directions, whose choice is noisier than a coarse estimate along it.
-    pub(in crate::transport) fn share(self, looks: f32) -> f32 {
+    /// The part of `amount`, collisions or reads along the brightest chord, for a ray of this kind.
+    /// Camera rays are sampled closely; any other ray is one of many directions, whose choice is
+    /// noisier than a coarse estimate along it.
+    pub(in crate::transport) fn share(self, amount: f32) -> f32 {
         match self {
-            Self::Camera => looks,
-            Self::Scattered | Self::Light => OTHER_LOOKS * looks,
+            Self::Camera => amount,
+            Self::Scattered | Self::Light => OTHER_SHARE * amount,
         }
     }
 }
@@ -43,7 +44,7 @@ pub(in crate::transport) fn attenuated(emission: Rgb, mu_t: Rgb, length: f32) ->
     let of = |epsilon: f32, mu: f32| {
         let tau = mu * length;
         match () {
-            // Not even an infinite length of nothing glows.
+            // No emission even over an infinite length.
             () if epsilon == 0.0 => 0.0,
             () if mu == 0.0 => epsilon * length,
             () if tau < 1e-4 => epsilon * length * (1.0 - 0.5 * tau),

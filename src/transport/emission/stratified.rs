@@ -1,5 +1,5 @@
-//! Stratified emission sampling: where the emission is looked at and how the transmittance is
-//! estimated are two questions.
+//! Stratified emission sampling: reads of the emission and the transmittance to them are sampled
+//! separately.
 //!
 //! The emission is read at jittered positions, one in each unit of Λ(t) = ∫ λ dt, and each adds
 //! ε(t) T̂(t) / λ(t). Their jitter is independent of that of the transmittance's, so that the mean
@@ -19,13 +19,13 @@ use crate::{
 /// Places where a comb along a camera ray reads μ_t, for each unit of the majorants' optical
 /// distance: T̂ is the larger part of the noise that is left there.
 const CAMERA_READS: f32 = 6.0;
-/// The same along any other ray, whose direction was a noisier choice.
+/// Reads of μ_t in the same unit along any other ray, whose direction was a noisier choice.
 const OTHER_READS: f32 = 1.0;
 
-/// How closely a walk looks, and the numbers its places are jittered by.
+/// Numbers of reads of a walk, and the slots of random numbers that jitter them.
 struct StratifiedSampling {
-    /// Looks at the emission along the brightest chord.
-    looks: f32,
+    /// Reads of the emission along the brightest chord.
+    emission_reads: f32,
     /// Places where a comb reads μ_t, for each unit of the majorants' optical distance.
     reads: f32,
     jitter: Slot,
@@ -34,7 +34,7 @@ struct StratifiedSampling {
 
 impl StratifiedSampling {
     fn new(boost: f32, ray_kind: RayKind) -> Self {
-        let looks = ray_kind.share(boost);
+        let emission_reads = ray_kind.share(boost);
         let reads = match ray_kind {
             RayKind::Camera => CAMERA_READS,
             RayKind::Scattered | RayKind::Light => OTHER_READS,
@@ -47,12 +47,12 @@ impl StratifiedSampling {
                 (Slot::LightEmission, [Slot::LightTransmittanceA, Slot::LightTransmittanceB])
             }
         };
-        Self { looks: looks.max(EMISSION_FLOOR), reads, jitter, comb_jitters }
+        Self { emission_reads: emission_reads.max(EMISSION_FLOOR), reads, jitter, comb_jitters }
     }
 }
 
-/// Gathers the emission along the medium, with `boost` looks at it on the brightest chord of a
-/// camera ray.
+/// Gathers the emission along the medium, with `boost` reads along the brightest chord of a camera
+/// ray.
 pub(in crate::transport) fn gather(
     mut medium: MediumRay,
     boost: f32,
@@ -77,42 +77,42 @@ pub(in crate::transport) fn gather(
     }
     // A walk that is cut may have read a few places more.
     let collisions = walk.read().min(MOST_COLLISIONS);
-    RayEmission { emission: walk.emission, transmittance: walk.way.estimate(), collisions }
+    RayEmission { emission: walk.emission, transmittance: walk.t_hat.estimate(), collisions }
 }
 
 struct Stratified {
-    looks_per_chord: f32,
-    looks: Comb,
-    way: Transmittance,
+    reads_per_chord: f32,
+    comb: Comb,
+    t_hat: Transmittance,
     emission: Rgb,
-    looked: u32,
+    emission_reads: u32,
 }
 
 impl Stratified {
-    fn new(effort: &StratifiedSampling, rng: &mut PathRng) -> Self {
-        let looks = Comb::new(rng.at(effort.jitter));
-        let jitters = effort.comb_jitters.map(|slot| rng.at(slot));
+    fn new(sampling: &StratifiedSampling, rng: &mut PathRng) -> Self {
+        let comb = Comb::new(rng.at(sampling.jitter));
+        let jitters = sampling.comb_jitters.map(|slot| rng.at(slot));
         Self {
-            looks_per_chord: effort.looks,
-            looks,
-            way: Transmittance::new(effort.reads, jitters, rng),
+            reads_per_chord: sampling.emission_reads,
+            comb,
+            t_hat: Transmittance::new(sampling.reads, jitters, rng),
             emission: Rgb::ZERO,
-            looked: 0,
+            emission_reads: 0,
         }
     }
 
-    /// Places read so far.
+    /// Reads of the medium so far.
     fn read(&self) -> u32 {
-        self.looked.saturating_add(self.way.reads)
+        self.emission_reads.saturating_add(self.t_hat.reads)
     }
 
-    /// λ = max(looks · maj ε, maj μ_t), where anything emits. Thinned out by T̂ it would take fewer
-    /// looks, but fire behind smoke would come at several times the noise.
+    /// λ = max(reads · maj ε, maj μ_t), where anything emits. Thinned out by T̂ there would be
+    /// fewer reads, but fire behind smoke would have several times the noise.
     fn rate(&self, segment: &Segment) -> f32 {
         if segment.emission_rate <= 0.0 {
             return 0.0;
         }
-        (self.looks_per_chord * segment.emission_rate).max(segment.majorant)
+        (self.reads_per_chord * segment.emission_rate).max(segment.majorant)
     }
 
     fn cross(
@@ -124,20 +124,20 @@ impl Stratified {
         let mut t = segment.t0;
         let rate = self.rate(segment);
         if rate > 0.0 {
-            while let Some(place) = self.looks.next(rate, t, segment.t1) {
-                self.way.advance(medium, segment.majorant, t, place, rng)?;
+            while let Some(place) = self.comb.next(rate, t, segment.t1) {
+                self.t_hat.advance(medium, segment.majorant, t, place, rng)?;
                 t = place;
-                self.looked += 1;
+                self.emission_reads += 1;
                 let emission = medium.emission(place);
                 if emission != Rgb::ZERO {
-                    self.emission += emission * self.way.estimate() / rate;
+                    self.emission += emission * self.t_hat.estimate() / rate;
                 }
                 if self.read() >= MOST_COLLISIONS {
                     return ControlFlow::Break(());
                 }
             }
         }
-        self.way.advance(medium, segment.majorant, t, segment.t1, rng)?;
+        self.t_hat.advance(medium, segment.majorant, t, segment.t1, rng)?;
         if self.read() >= MOST_COLLISIONS {
             return ControlFlow::Break(());
         }
@@ -153,9 +153,9 @@ impl Stratified {
         let c = medium.coefficients(segment.t0);
         if c.emission != Rgb::ZERO {
             let gathered = attenuated(c.emission, c.mu_t, segment.t1 - segment.t0);
-            self.emission += self.way.estimate() * gathered;
+            self.emission += self.t_hat.estimate() * gathered;
         }
-        self.way.cross_uniform(c.mu_t, segment, rng)
+        self.t_hat.cross_uniform(c.mu_t, segment, rng)
     }
 }
 

@@ -1,4 +1,4 @@
-//! Where a path stands: everything that a branch saves and restores.
+//! State of a path: everything that a branch saves and restores.
 
 use glam::Vec3A;
 
@@ -11,27 +11,27 @@ pub(super) struct State {
     pub(super) ray: Ray,
     /// β: the product of f/p so far, without any MIS weight of direct light.
     pub(super) throughput: Rgb,
-    /// p_mixture / p_bsdf of the last direction drawn at a vertex that scatters everywhere: a path
-    /// that was sent to light is not dim for being one of many.
+    /// p_mixture / p_bsdf of the last direction drawn at a vertex that scatters everywhere, for
+    /// roulette: a path that was guided to light is not dim for being one of many.
     pub(super) guiding_ratio: f32,
     /// Scattering events and reflections so far.
     pub(super) scatters: u32,
     /// The vertex the ray left, for MIS; `None` for the camera ray.
     pub(super) prev_vertex: Option<PrevVertex>,
-    /// A point of a light that guides the ray.
+    /// Sampled point of a light that the ray is guided by.
     pub(super) light: Option<Vec3A>,
     pub(super) branch: Branch,
 }
 
-/// Which random numbers a path draws: a camera ray may have guided flights beside its own, and
-/// vertices may be left several times.
+/// Series of random numbers that a path draws: a camera ray may have guided flights beside its own,
+/// and paths may be split at vertices.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Branch {
     /// The path of the unguided flight.
     Main,
     /// The path of the first guided flight.
     FirstGuided,
-    /// Any other.
+    /// The path of any other guided flight or split.
     Other,
 }
 

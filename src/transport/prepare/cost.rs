@@ -1,21 +1,22 @@
-//! What a path costs, counted instead of timed, so that what is learned from it is the same wherever
-//! and whenever it is learned.
+//! Cost of a path, counted instead of timed, so that decisions based on it are the same on any
+//! machine and at any time.
 
 use crate::transport::observer::{Observer, PathStep};
 use crate::transport::sample::PathSample;
 
-/// What a ray or a vertex costs beside the steps, in tracking steps. Measured on the scenes of the
-/// noise benchmark: good to a factor of two, and between two strategies on one scene to a quarter.
+/// Cost of a ray or a vertex beside the tracking steps, in tracking steps. Measured on the scenes
+/// of the noise benchmark: good to a factor of two, and between two strategies on one scene to a
+/// quarter.
 const RAY_COST: f64 = 11.0;
 
-/// Counts what a path does beside its tracking steps.
+/// Counts the rays and vertices of a path.
 #[derive(Debug, Default)]
 pub(in crate::transport) struct Cost {
     rays_and_vertices: u32,
 }
 
 impl Cost {
-    /// Cost of the path that brought `sample`, in tracking steps.
+    /// Cost of the path of `sample`, in tracking steps.
     pub(in crate::transport) fn of(&self, sample: &PathSample) -> f64 {
         f64::from(sample.tracking_steps) + RAY_COST * f64::from(self.rays_and_vertices)
     }

@@ -1,9 +1,9 @@
-//! How many guided flights pay for a shot, if any: a pilot tries, before the second sample.
+//! Number of guided flights for a picture, measured by a pilot pass before the second sample.
 //!
 //! Probes cost time along every ray, and each guided flight is a path. Inside of smoke with a lamp
 //! in it they lower the noise a hundred times; a cloud under an even sky, or fire that hardly
-//! scatters, looks the same without them and takes half of the time. So each of a few shares is
-//! tried on some pixels, and the one with the least variance times cost is taken.
+//! scatters, is as noisy without them and takes half of the time. So each of a few shares is tried
+//! on some pixels, and the one with the least variance times cost is taken.
 //!
 //! Costs are counted, not timed, and the random numbers are none of the picture's, so that the same
 //! scene on the same film always gets the same share. Unbiased whichever that is.
@@ -19,21 +19,22 @@ use crate::{
     math::luminance,
 };
 
-/// The shares that are tried, relative to the flights that the probes propose.
+/// Shares that the pilot pass tries, relative to the flights that the probes propose.
 const TRIED: [f32; 4] = [0.0, 0.06, 0.25, 1.0];
-/// The share of samples that don't wait for the pilot.
+/// Share of guided flights in samples that don't wait for the pilot pass.
 pub(in crate::transport) const FIRST: f32 = 0.25;
-/// What is spent on each share, in tracking steps of one of two paths at each pixel.
+/// Cost spent on each share, in tracking steps of one of two paths at each pixel.
 const BUDGET: f64 = 131_072.0;
 /// Most pixels that a share is tried on.
 const MOST_PILOT_PIXELS: u32 = 1 << 14;
-/// What it costs to ask the probes along a ray, in tracking steps. Measured as the rest is.
+/// Cost of reading the probes along a ray, in tracking steps. Measured as the rest is.
 const GUIDE_COST: f64 = 26.0;
-/// By how much guided flights have to be better than none, which the pilot knows to a fifth.
+/// Factor by which guided flights must lower variance times cost against none, which the pilot pass
+/// measures to a fifth.
 const MARGIN: f64 = 0.8;
 
-/// The share that lowers variance times cost most for `scene` on a film of `size`; `context` are those
-/// of a share.
+/// The share with the least variance times cost for `scene` on a film of `size`; `context` builds
+/// the context of a share.
 ///
 /// # Errors
 /// [`Error::Cancelled`](crate::error::Error::Cancelled) where `progress` says so.
@@ -66,7 +67,7 @@ pub(in crate::transport) fn flights<'s>(
 
 /// The share with the least variance times cost, if it is clearly better than none.
 fn best(trials: &[ShareTrial; TRIED.len()]) -> f32 {
-    // Of a fire that hardly scatters it is most of the noise, and no share lowers it.
+    // In a fire that hardly scatters, direct emission is most of the noise, and no share lowers it.
     let emission = trials.iter().map(|trial| trial.emission).sum::<f64>() / trials.len() as f64;
     let (mut least, mut best) = (f64::INFINITY, FIRST);
     for (share, trial) in TRIED.into_iter().zip(trials) {
@@ -79,12 +80,12 @@ fn best(trials: &[ShareTrial; TRIED.len()]) -> f32 {
     best
 }
 
-/// What a share brought.
+/// Measurements of one share.
 #[derive(Clone, Copy, Debug, Default)]
 struct ShareTrial {
     /// Mean over the pixels of the variance of the light that is scattered or reflected to them.
     scattered: f64,
-    /// The same of the emission that is seen directly.
+    /// Mean over the pixels of the variance of the emission that is seen directly.
     emission: f64,
     /// Mean cost of a sample, in steps.
     cost: f64,
@@ -181,7 +182,7 @@ mod tests {
         }
     }
 
-    /// Each share is found best where it is.
+    /// Each share is selected where it has the least variance times cost.
     #[test]
     fn the_least_variance_times_cost_is_best() {
         let trial = |scattered, cost| ShareTrial { scattered, emission: 1.0, cost };
@@ -190,7 +191,7 @@ mod tests {
             ([9.0, 1.0, 0.9, 0.8], [1.0, 2.0, 3.0, 4.0], 0.06),
             ([9.0, 9.0, 1.0, 0.9], [1.0, 2.0, 3.0, 4.0], 0.25),
             ([99.0, 50.0, 20.0, 1.0], [1.0, 2.0, 3.0, 4.0], 1.0),
-            // What no share lowers makes the cheapest best.
+            // Variance that no share lowers makes the cheapest share best.
             ([0.3, 0.2, 0.1, 0.0], [1.0, 2.0, 3.0, 4.0], 0.0),
             // Hardly better than none is not clearly better.
             ([1.0, 0.9, 2.0, 2.0], [1.0, 1.0, 1.0, 1.0], 0.0),
@@ -202,9 +203,9 @@ mod tests {
         }
     }
 
-    /// The pilot pass finds the same on any thread, however many run at once.
+    /// The pilot pass has the same result on any thread, however many run at once.
     #[test]
-    fn every_pilot_pass_finds_the_same() {
+    fn every_pilot_pass_has_the_same_result() {
         use rayon::prelude::*;
         let expected = frame(LAMP).guided_flights();
         let found: Vec<f32> =

@@ -1,10 +1,10 @@
-//! What probes learn from paths: the light that reaches a place after it has turned before, which
-//! no look at a light tells.
+//! Indirect light of probes, learned from paths: light scattered or reflected before it reaches a
+//! place, which no light sample estimates.
 //!
-//! Rays go out from points in each probe in directions spread over the sphere. What is scattered
-//! and reflected into them is the radiance that arrives indirectly, hidden lights and walls
-//! included. Its fluence and mean direction are kept. The pre-pass is fixed by the scene alone, so
-//! that every render of it has the same probes; the paths of the picture change nothing.
+//! Rays leave points in each probe in directions spread over the sphere. The radiance scattered and
+//! reflected into them is the radiance that arrives indirectly, hidden lights and walls included.
+//! Its fluence and mean direction are kept. The pre-pass is fixed by the scene alone, so that every
+//! render of it has the same probes; the paths of the picture change nothing.
 
 use std::f32::consts::{PI, TAU};
 
@@ -29,27 +29,28 @@ use crate::{
 const PATHS: u32 = 16;
 /// Cost of a probe's paths, in tracking steps, after which no other sets out.
 const COST_BUDGET: f64 = 1536.0;
-/// Turns after which they end: later ones bring little that would move a probe.
-const MOST_TURNS: u32 = 64;
+/// Scattering events and reflections after which the paths end: later ones contribute little that
+/// would change a probe.
+const MOST_SCATTERS: u32 = 64;
 /// Steps of two numbers that fill the unit square evenly, however many there are (Roberts 2018).
 const EVEN_STEPS: [f32; 2] = [0.754_877_7, 0.569_840_3];
 
-/// The light that arrives indirectly in each leaf of `probes`, by paths that set out from there.
+/// Indirect light in each leaf of `probes`, estimated by paths that start there.
 pub(super) fn indirect_light(
     probes: &Probes,
     scene: &Scene,
     progress: Progress,
 ) -> Result<Vec<(u32, Indirect)>> {
-    let turns = match scene.max_scatters {
-        0 => MOST_TURNS,
-        most => most.min(MOST_TURNS),
+    let max_scatters = match scene.max_scatters {
+        0 => MOST_SCATTERS,
+        most => most.min(MOST_SCATTERS),
     };
     let advanced = Advanced {
         light_selection: scene.strategy.advanced.light_selection,
         ..Advanced::default()
     };
     let strategy = Strategy { advanced, ..Preset::Full.strategy() };
-    let scene = Scene { max_scatters: turns, strategy, ..scene.clone() };
+    let scene = Scene { max_scatters, strategy, ..scene.clone() };
     let emission_estimator = EmissionEstimator::coarse();
     let brightness = Brightness::default();
     let context = PathContext {
@@ -64,7 +65,7 @@ pub(super) fn indirect_light(
     probes.leaves().par_iter().map(learn).collect()
 }
 
-/// The light that arrives indirectly in a leaf.
+/// Indirect light in a leaf.
 fn around(
     scene: &Scene,
     context: PathContext<'_>,

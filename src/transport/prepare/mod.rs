@@ -1,5 +1,5 @@
-//! Paths that are traced before the picture, to find out what pays in it: k of the optimal
-//! majorant, what probes learn, how many guided flights the camera rays get.
+//! Paths that are traced before the picture to prepare it: k of the optimal majorant, the indirect
+//! light of probes, the number of guided flights of the camera rays.
 //!
 //! All of it is fixed by the scene, the strategy and the size of the film, never by the seed, the
 //! time or the number of threads, and costs are counted in steps, so that the same picture is
@@ -18,22 +18,23 @@ use super::probes::Probes;
 use super::scene::Scene;
 use crate::error::{Progress, Result};
 
-/// The emission walk for a picture of `size` pixels. The optimal majorant takes a few milliseconds
-/// to be fitted; nothing else is measured.
+/// The emission walk for a picture of `size` pixels. To fit the optimal majorant takes a few
+/// milliseconds; the other walks need no measurement.
 pub(super) fn emission_estimator(
     scene: &Scene,
     size: UVec2,
     progress: Progress,
 ) -> Result<EmissionEstimator> {
     let fitted = match EmissionEstimator::is_fitted(&scene.strategy) {
-        true => optimal_majorant::looks(scene, size, progress)?,
+        true => optimal_majorant::fit(scene, size, progress)?,
         false => 0.0,
     };
     Ok(EmissionEstimator::new(&scene.strategy, fitted))
 }
 
 /// The probes for `scene`, if its strategy asks for any and anything scatters. The same scene
-/// always gets the same ones. `progress` is asked after every few paths, from many threads at once.
+/// always gets the same ones. `progress` is called after every few paths, from many threads at
+/// once.
 ///
 /// # Errors
 /// [`Error::Cancelled`](crate::error::Error::Cancelled) where `progress` says so.

@@ -1,9 +1,10 @@
-//! How often the optimal majorant looks: k from measured variance and steps.
+//! Collisions k of the optimal majorant along the brightest chord, from measured variance and
+//! steps.
 //!
-//! At k looks along the brightest chord a sample has a variance of about A + B/k and takes about
-//! C + S k steps. The product of the two is least at k = √(B C / (A S)). All four are measured on a
-//! few camera rays before the first sample, with random numbers that no picture uses and costs
-//! counted in steps, so that the same scene on the same film always gets the same k.
+//! At k collisions along the brightest chord a sample has a variance of about A + B/k and takes
+//! about C + S k steps. The product of the two is least at k = √(B C / (A S)). All four are
+//! measured on a few camera rays before the first sample, with random numbers that no picture uses
+//! and costs counted in steps, so that the same scene on the same film always gets the same k.
 
 use glam::UVec2;
 
@@ -17,46 +18,47 @@ use crate::transport::observer::Nobody;
 use crate::transport::probes::Brightness;
 use crate::transport::scene::Scene;
 
-/// Pixels with something that glows in them that are measured at most.
+/// Most pixels with emission that are measured.
 const MOST_PILOT_PIXELS: u32 = 192;
-/// Pixels that are searched for it at most.
+/// Most pixels that are searched for emission.
 const MOST_SEARCHED: u32 = 4096;
 /// Steps after which the measurement makes do with what it has; a segment searched counts as one.
 const MOST_STEPS: u32 = 1 << 17;
-/// The looks that are tried.
+/// Values of k that are measured.
 const TRIED: [f32; 2] = [32.0, 256.0];
-/// What a path costs beside its steps, counted in them. Measured: 5 for a camera ray that meets a
-/// fire or nothing, 40 with a few vertices.
+/// Cost of a path beside its steps, in steps. Measured: 5 for a camera ray that meets a fire or
+/// nothing, 40 with a few vertices.
 const PATH_COST: f64 = 8.0;
-/// Looks where nothing could be measured.
+/// k where nothing could be measured.
 const UNMEASURED: f32 = 32.0;
-/// Looks whose steps cost this many times as much as all else gain next to nothing any more.
+/// Most that the steps at k may cost, relative to all other cost: beyond this, more collisions gain
+/// next to nothing.
 const DEAREST: f64 = 8.0;
-/// The range of the answer.
+/// Range of k.
 const RANGE: [f64; 2] = [1.0, 4096.0];
 
-/// The k that lowers variance times cost most for camera rays of `scene` on a film of `size`.
+/// The k with the least variance times cost for camera rays of `scene` on a film of `size`.
 ///
 /// # Errors
 /// [`Error::Cancelled`](crate::error::Error::Cancelled) where `progress` says so.
-pub(in crate::transport) fn looks(scene: &Scene, size: UVec2, progress: Progress) -> Result<f32> {
+pub(in crate::transport) fn fit(scene: &Scene, size: UVec2, progress: Progress) -> Result<f32> {
     Ok(measure(scene, size, progress)?.optimum().unwrap_or(UNMEASURED))
 }
 
-/// Sums over the sites.
+/// Sums over the pilot pixels.
 #[derive(Clone, Copy, Debug, Default)]
 struct Measured {
     searched: u32,
     pilot_pixels: u32,
     /// Variance of the walk along one ray at each of [`TRIED`].
     walk_variance: [f64; 2],
-    /// Its steps.
+    /// Steps of the walk along one ray at each of [`TRIED`].
     walk_steps: [f64; 2],
     /// Variance of whole samples of a pixel at the last of [`TRIED`].
     path_variance: f64,
-    /// Their steps.
+    /// Steps of whole samples of a pixel at the last of [`TRIED`].
     path_steps: f64,
-    /// Steps spent on all of it.
+    /// Steps spent on the whole measurement.
     spent: u32,
 }
 
@@ -83,41 +85,42 @@ fn measure(scene: &Scene, size: UVec2, progress: Progress) -> Result<Measured> {
 impl Measured {
     fn add(&mut self, pilot_pixel: &PilotPixel) {
         self.pilot_pixels += 1;
-        for (i, &looks) in TRIED.iter().enumerate() {
-            let [a, b] = [0, 1].map(|walk| pilot_pixel.walk(looks, 2 * i as u32 + walk));
+        for (i, &k) in TRIED.iter().enumerate() {
+            let [a, b] = [0, 1].map(|walk| pilot_pixel.walk(k, 2 * i as u32 + walk));
             self.walk_variance[i] += half_square(a.0 - b.0);
             self.walk_steps[i] += 0.5 * (f64::from(a.1) + f64::from(b.1));
             self.spent = self.spent.saturating_add(a.1).saturating_add(b.1);
         }
-        let [a, b] = [0, 1].map(|path| pilot_pixel.looking(TRIED[1], path));
+        let [a, b] = [0, 1].map(|path| pilot_pixel.traced(TRIED[1], path));
         self.path_variance += half_square(a.0 - b.0);
         self.path_steps += 0.5 * (f64::from(a.1) + f64::from(b.1));
         self.spent = self.spent.saturating_add(a.1).saturating_add(b.1);
     }
 
-    /// `None` where the looks made no measurable difference.
+    /// The k of least variance times cost; `None` where k made no measurable difference.
     fn optimum(&self) -> Option<f32> {
         let [few, many] = TRIED.map(f64::from);
         let pilot_pixels = f64::from(self.pilot_pixels);
-        let per_look = (self.walk_steps[1] - self.walk_steps[0]) / (many - few);
-        let unboosted = (self.walk_steps[0] - per_look * few).max(0.0);
+        let per_collision = (self.walk_steps[1] - self.walk_steps[0]) / (many - few);
+        let unboosted = (self.walk_steps[0] - per_collision * few).max(0.0);
         let others = self.path_steps - self.walk_steps[1];
-        // The pixels that nothing glows in cost something as well.
+        // The pixels without emission cost something as well.
         let cost = PATH_COST * f64::from(self.searched) + (others + unboosted).max(0.0);
         let drop = (self.walk_variance[0] - self.walk_variance[1]) / (1.0 / few - 1.0 / many);
-        if !(pilot_pixels > 0.0 && per_look > 0.0 && drop > 0.0 && drop.is_finite()) {
+        if !(pilot_pixels > 0.0 && per_collision > 0.0 && drop > 0.0 && drop.is_finite()) {
             return None;
         }
         let left = |variance: f64| (variance - drop / many).max(0.0);
         let rest = left(self.path_variance).max(left(self.walk_variance[1]));
-        let dearest = DEAREST * cost / per_look;
-        let best = (drop * cost / (rest * per_look)).sqrt().min(dearest);
+        let dearest = DEAREST * cost / per_collision;
+        let best = (drop * cost / (rest * per_collision)).sqrt().min(dearest);
         best.is_finite().then(|| best.clamp(RANGE[0], RANGE[1]) as f32)
     }
 }
 
 impl PilotPixel<'_> {
-    /// Whether the first ray meets anything that may glow; adds the segments it took to know.
+    /// Whether the first ray meets anything that may emit; adds the segments it took to find out to
+    /// `spent`.
     fn emits(&self, spent: &mut u32) -> bool {
         let mut medium = self.scene.world.along(self.rays[0], self.end());
         while let Some(segment) = medium.next_segment() {
@@ -130,16 +133,16 @@ impl PilotPixel<'_> {
     }
 
     /// The emission that walk `number` gathers along the first ray, and its steps.
-    fn walk(&self, looks: f32, number: u32) -> (f64, u32) {
+    fn walk(&self, k: f32, number: u32) -> (f64, u32) {
         let medium = self.scene.world.along(self.rays[0], self.end());
         let mut rng = self.rng(number);
-        let gathered = EmissionEstimator::optimal(looks).gather(medium, RayKind::Camera, &mut rng);
+        let gathered = EmissionEstimator::optimal(k).gather(medium, RayKind::Camera, &mut rng);
         (f64::from(luminance(gathered.emission)), gathered.collisions)
     }
 
-    /// What a path along ray `number` brings, and its steps.
-    fn looking(&self, looks: f32, number: u32) -> (f64, u32) {
-        let emission_estimator = EmissionEstimator::optimal(looks);
+    /// Luminance of a path along ray `number`, and its steps.
+    fn traced(&self, k: f32, number: u32) -> (f64, u32) {
+        let emission_estimator = EmissionEstimator::optimal(k);
         let sample =
             self.path(unguided(&emission_estimator), number as usize, 7 + number, &mut Nobody);
         (f64::from(luminance(sample.beauty())), sample.tracking_steps)
@@ -164,8 +167,8 @@ mod tests {
 
     const SIZE: UVec2 = UVec2::new(24, 24);
 
-    fn looks(scene: &Scene, size: UVec2) -> f32 {
-        super::looks(scene, size, NO_PROGRESS).unwrap()
+    fn fit(scene: &Scene, size: UVec2) -> f32 {
+        super::fit(scene, size, NO_PROGRESS).unwrap()
     }
 
     fn measure(scene: &Scene, size: UVec2) -> Measured {
@@ -201,9 +204,9 @@ mod tests {
     "#;
 
     /// Variance of independent samples times their cost, over the whole film.
-    fn variance_times_cost(scene: &Scene, looks: f32) -> f64 {
+    fn variance_times_cost(scene: &Scene, k: f32) -> f64 {
         const SAMPLES: u32 = 64;
-        let emission_estimator = EmissionEstimator::optimal(looks);
+        let emission_estimator = EmissionEstimator::optimal(k);
         let context = unguided(&emission_estimator);
         let (mut variance, mut steps) = (0.0, 0.0);
         for i in 0..SIZE.element_product() {
@@ -224,16 +227,16 @@ mod tests {
         variance * (PATH_COST + steps / paths)
     }
 
-    /// Of 1/16 to 4 times what was found none is better by more than a quarter, while the worst of
-    /// them is worse by far.
+    /// Among 1/16 to 4 times the fitted k none is better by more than a quarter, while the worst is
+    /// far worse.
     #[test]
-    fn nothing_much_better_is_found_by_trying() {
+    fn no_other_k_is_much_better() {
         for (name, text) in [
             ("fire", format!("{CAMERA}{FIRE}")),
             ("fire behind smoke", format!("{CAMERA}{FIRE}{SMOKE}")),
         ] {
             let scene = Scene::of_text(&text);
-            let found = looks(&scene, SIZE);
+            let found = fit(&scene, SIZE);
             let all = [1.0 / 16.0, 0.25, 0.5, 1.0, 2.0, 4.0]
                 .map(|scale| variance_times_cost(&scene, scale * found));
             let best = all.into_iter().fold(f64::INFINITY, f64::min);
@@ -244,13 +247,13 @@ mod tests {
     }
 
     #[test]
-    fn whoever_measures_finds_the_same() {
+    fn every_measurement_has_the_same_result() {
         let text = format!("{CAMERA}{FIRE}{SMOKE}");
-        let found = looks(&Scene::of_text(&text), SIZE);
+        let found = fit(&Scene::of_text(&text), SIZE);
         let threads: Vec<_> = (0..3)
             .map(|_| {
                 let text = text.clone();
-                std::thread::spawn(move || looks(&Scene::of_text(&text), SIZE))
+                std::thread::spawn(move || fit(&Scene::of_text(&text), SIZE))
             })
             .collect();
         for thread in threads {
@@ -267,33 +270,32 @@ mod tests {
 
         let dark = Scene::of_text(&format!("{CAMERA}{SMOKE}"));
         assert_eq!(measure(&dark, SIZE).searched, 0);
-        assert_eq!(looks(&dark, SIZE), UNMEASURED);
+        assert_eq!(fit(&dark, SIZE), UNMEASURED);
 
         let away = CAMERA.replace("[0, 0, 0]", "[0, -8, 0]");
         let unseen = Scene::of_text(&format!("{away}{FIRE}{SMOKE}"));
         let measured = measure(&unseen, SIZE);
         assert!(measured.pilot_pixels == 0 && measured.spent == 0, "{measured:?}");
-        assert_eq!(looks(&unseen, SIZE), UNMEASURED);
+        assert_eq!(fit(&unseen, SIZE), UNMEASURED);
 
-        // Smoke fills the view and hides nothing that glows.
+        // Smoke fills the view and hides nothing that emits.
         let beside = FIRE.replace("[[volume]]", "[[volume]]\ntranslate = [0, -9, 0]");
         let hidden = Scene::of_text(&format!("{CAMERA}{beside}{SMOKE}"));
         let measured = measure(&hidden, SIZE);
         assert!(measured.pilot_pixels == 0 && measured.spent < 2 * MOST_STEPS, "{measured:?}");
     }
 
-    /// What is measured of light that cannot be squared or that is next to nothing still gives a
-    /// number to go on with.
+    /// Radiance that cannot be squared or that is next to nothing still gives a valid k.
     #[test]
-    fn whatever_glows_gives_a_number_of_looks() {
+    fn every_emission_has_a_valid_k() {
         for le in ["3e38", "1e30", "1e-30", "1e-44"] {
             for density in ["1e-30", "0.5", "1e9", "1e30"] {
                 let fire = FIRE
                     .replace("[3.0, 1.0, 0.2]", le)
                     .replace("scale = 0.5", &format!("scale = {density}"));
                 let scene = Scene::of_text(&format!("{CAMERA}{fire}"));
-                let looks = looks(&scene, UVec2::splat(4));
-                assert!((1.0..=4096.0).contains(&looks), "le {le}, density {density}: {looks}");
+                let k = fit(&scene, UVec2::splat(4));
+                assert!((1.0..=4096.0).contains(&k), "le {le}, density {density}: {k}");
             }
         }
     }

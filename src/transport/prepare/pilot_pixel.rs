@@ -1,4 +1,4 @@
-//! Places on the film that are looked at before the first sample, to find out what pays.
+//! Pilot pixels: pixels sampled before the picture to measure variance and cost.
 
 use glam::{UVec2, Vec2};
 
@@ -12,7 +12,7 @@ use crate::{
     surface,
 };
 
-/// Fixed, and like the samples it is used with none that a picture is likely to have.
+/// Fixed seed, which with the sample numbers used here no picture is likely to have.
 const SEED: u64 = 0x6f70_7469_6d61_6c21;
 
 /// A pixel and two rays through it.
@@ -23,7 +23,7 @@ pub(in crate::transport) struct PilotPixel<'s> {
 }
 
 impl<'s> PilotPixel<'s> {
-    /// Number `index` of a sequence that covers the film evenly (Roberts 2018, R₂).
+    /// Pilot pixel number `index` of a sequence that covers the film evenly (Roberts 2018, R₂).
     pub(in crate::transport) fn new(scene: &'s Scene, size: UVec2, index: u32) -> Self {
         const STEP: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_2];
         let place = STEP.map(|step| (0.5 + step * f64::from(index)).fract() as f32);
@@ -36,7 +36,7 @@ impl<'s> PilotPixel<'s> {
         Self { scene, pixel, rays }
     }
 
-    /// Where surfaces end the first ray.
+    /// Ray parameter at which a surface ends the first ray; infinite without one.
     pub(in crate::transport) fn end(&self) -> f32 {
         surface::intersect(&self.scene.surfaces, &self.rays[0])
             .map_or(f32::INFINITY, |end| end.hit.t)
@@ -47,7 +47,7 @@ impl<'s> PilotPixel<'s> {
         self.scene.world.along(self.rays[0], self.end()).extent().is_some()
     }
 
-    /// Random numbers for what is tried here; each `number` gives others.
+    /// Random numbers for measurement `number` at this pixel; each number has its own.
     pub(in crate::transport) fn rng(&self, number: u32) -> PathRng {
         PathRng::new(SEED, self.pixel, u32::MAX - 1 - number)
     }
@@ -64,7 +64,8 @@ impl<'s> PilotPixel<'s> {
     }
 }
 
-/// Of two independent finds, what is on average their variance.
+/// Half the square of the difference of two independent estimates, which is their variance on
+/// average.
 pub(in crate::transport) fn half_square(difference: f64) -> f64 {
     0.5 * difference * difference
 }

@@ -1,4 +1,4 @@
-//! How much of the lights' light the medium scatters, which is what glows around them.
+//! Share of the lights' power that the medium scatters: the strength of airlight around them.
 
 use std::f32::consts::TAU;
 
@@ -20,8 +20,8 @@ use crate::{
 /// Rays that are followed from the lights.
 const RAYS: u32 = 256;
 
-/// The share of the light of all lights that are somewhere which is scattered at least once, the
-/// albedo included; 0 where there are none.
+/// Share of the power of all lights at finite distances that is scattered at least once, the albedo
+/// included; 0 without such lights.
 pub(super) fn scattered_share(scene: &Scene, progress: Progress) -> Result<f32> {
     let emitters = scene.lights.emitters(&scene.world);
     let intensity = |emitter: &Emitter| f64::from(emitter.intensity.clamp(0.0, f32::MAX));
@@ -45,7 +45,7 @@ pub(super) fn scattered_share(scene: &Scene, progress: Progress) -> Result<f32> 
     Ok(if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 })
 }
 
-/// Of one ray from a light.
+/// Scattered share of the power along one ray from a light.
 fn scattered_of(scene: &Scene, emitter: &Emitter, rng: &mut PathRng) -> f32 {
     let u = Vec3A::new(rng.uniform(), rng.uniform(), rng.uniform());
     let origin = emitter.bounds.min + u * emitter.bounds.size();
@@ -53,7 +53,7 @@ fn scattered_of(scene: &Scene, emitter: &Emitter, rng: &mut PathRng) -> f32 {
         Some((axis, _)) => axis,
         None => spherical(1.0 - 2.0 * rng.uniform(), TAU * rng.uniform()),
     };
-    // Its own surface does not end its light.
+    // The light's own surface does not end the ray.
     let size = emitter.bounds.diagonal();
     let outside = Ray::new(origin + size * direction, direction);
     let end = surface::intersect(&scene.surfaces, &outside);

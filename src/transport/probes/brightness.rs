@@ -1,4 +1,5 @@
-//! How much light the medium scatters into a picture, and how much comes off surfaces.
+//! Mean in-scattered radiance over a film, estimated from the probes, and its share among surface
+//! reflection.
 
 use glam::{UVec2, Vec2};
 
@@ -11,16 +12,17 @@ use crate::{
     transport::{direct, emission::EmissionEstimator, scene::Scene, vertex::Vertex},
 };
 
-/// Side of the grid of camera rays that are looked along.
+/// Side of the grid of camera rays along which the radiance is estimated.
 const SIDE: u32 = 24;
 
-/// The light of a film after one bounce, the mean over its pixels, as the probes and a few looks at
-/// the lights tell it. It decides how often guided flights pay.
+/// Mean radiance over the film after one bounce, estimated from the probes and a few light samples.
+/// Determines the number of guided flights.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Brightness {
-    /// Radiance that the medium scatters into a ray from the camera.
+    /// Mean radiance that the medium scatters into a camera ray.
     pub scattered: f32,
-    /// The part that has in all such light; the rest comes off surfaces, and guides don't help it.
+    /// Share, 0 to 1, of in-scattered radiance in all of it; the rest is reflected by surfaces, and
+    /// guiding does not help it.
     pub share: f32,
 }
 
@@ -44,13 +46,13 @@ impl Brightness {
         })
     }
 
-    /// With so many times the guided flights.
+    /// The brightness that allocates `flights` times as many guided flights.
     pub fn scaled(self, flights: f32) -> Self {
         Self { share: self.share * flights, ..self }
     }
 }
 
-/// Light that is scattered into ray number `index` and light that is reflected into it.
+/// Radiance that is scattered into ray number `index`, and radiance that is reflected into it.
 fn light_along(probes: &Probes, scene: &Scene, size: UVec2, index: u32) -> [f32; 2] {
     let cell = UVec2::new(index % SIDE, index / SIDE).as_vec2() + Vec2::splat(0.5);
     let place = cell / SIDE as f32 * size.as_vec2();
@@ -65,8 +67,8 @@ fn light_along(probes: &Probes, scene: &Scene, size: UVec2, index: u32) -> [f32;
     let mut rng = PathRng::new(SEED, UVec2::new(index, 1), 0);
     let (emission_estimator, choice) =
         (EmissionEstimator::coarse(), direct::choice(&scene.strategy));
-    let look = direct::sample_lights(scene, &emission_estimator, &vertex, &choice, &mut rng);
-    let reflected = luminance(look.light)
+    let sample = direct::sample_lights(scene, &emission_estimator, &vertex, &choice, &mut rng);
+    let reflected = luminance(sample.light)
         * distance_pdf.map_or(1.0, |distance_pdf| distance_pdf.transmittance());
     [scattered, if reflected.is_finite() { reflected } else { 0.0 }]
 }

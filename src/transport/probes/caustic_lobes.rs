@@ -1,57 +1,59 @@
-//! Light that metals throw into the medium in bundles, as it arrives in the leaves: each bundle
-//! points back to an image of its light, so that one direction does not have to stand for a leaf.
+//! Volume caustics as lobes: light that specular surfaces reflect into the medium, as it arrives in
+//! the leaves. Each lobe points back to an image of its light, so that one direction does not have
+//! to stand for a leaf.
 
 use glam::{Mat3A, Vec3A};
 use smallvec::SmallVec;
 
 use crate::volume::phase::henyey_greenstein;
 
-/// Bundles that are kept in a leaf.
+/// Most caustic lobes of a leaf.
 const MOST: usize = 4;
-/// Rays that a bundle needs.
+/// Least rays of a caustic lobe.
 const LEAST_RAYS: usize = 3;
-/// How much the image of a flat mirror is trusted to be where the rays meet, beside the rays.
+/// Weight of the image of the light in a flat mirror, against the meeting point of the rays.
 const TRUST: f32 = 1e-4;
-/// 1 − cos of the spread that is taken for granted, and the rays that stand for it.
+/// Prior spread of a lobe as 1 − cos, and the number of rays it counts as.
 const PRIOR: (f32, f32) = (0.01, 1.0);
-/// The narrowest bundle: 1 − cos of its spread.
+/// Least spread of a lobe, as 1 − cos.
 const NARROWEST: f32 = 1e-6;
 
-/// Part of a ray of light that a metal has thrown, in a leaf.
+/// Piece of a photon's ray inside of a leaf, after reflection by a specular surface.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::transport) struct PhotonSegment {
     /// The leaf.
     pub(in crate::transport) leaf: u32,
-    /// The metal and the light, by their indices in the scene.
+    /// The specular surface and the light, by their indices in the scene.
     pub(in crate::transport) origin: (u32, u32),
-    /// ∫ L dω that it brings to the leaf.
+    /// ∫ L dω, averaged over the leaf, that the piece contributes.
     pub(in crate::transport) fluence: f32,
-    /// A point of it.
+    /// A point of the piece.
     pub(in crate::transport) point: Vec3A,
-    /// Unit, towards where it comes from.
+    /// Unit direction towards the photon's origin.
     pub(in crate::transport) direction: Vec3A,
-    /// Where the light would be if the mirrors were windows.
+    /// Image of the light: its position if the mirrors were windows.
     pub(in crate::transport) image: Vec3A,
 }
 
-/// A bundle of light in a leaf.
+/// A volume caustic in a leaf: light of one source off one specular surface.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::transport) struct CausticLobe {
-    /// Where its rays come from.
+    /// Point that the caustic's rays come from.
     pub(in crate::transport) point: Vec3A,
-    /// Unit, on average towards there.
+    /// Unit mean direction towards the rays' origin.
     direction: Vec3A,
-    /// κ of their directions about that to the point.
+    /// Concentration κ of the rays' directions about the direction to `point`.
     pub(in crate::transport) concentration: f32,
-    /// ∫ L dω.
+    /// ∫ L dω of the caustic, averaged over the leaf.
     pub(in crate::transport) fluence: f32,
 }
 
-/// The bundles of all leaves; empty by default.
+/// Caustic lobes of all leaves; empty by default.
 #[derive(Clone, Debug, Default)]
 pub(super) struct CausticLobes {
     all: Vec<CausticLobe>,
-    /// Of each node the first in `all` and how many; empty where there is none at all.
+    /// For each node the index of its first lobe in `all` and their number; empty without any
+    /// lobes.
     places: Vec<(u32, u32)>,
 }
 
@@ -61,9 +63,9 @@ impl CausticLobes {
         let mut caustic_lobes = Self::default();
         segments.sort_by_key(|segment| (segment.leaf, segment.origin));
         for segments in segments.chunk_by(|a, b| a.leaf == b.leaf) {
-            let bundles = segments.chunk_by(|a, b| a.origin == b.origin);
+            let groups = segments.chunk_by(|a, b| a.origin == b.origin);
             let mut found: SmallVec<[CausticLobe; MOST]> =
-                bundles.filter_map(CausticLobe::new).collect();
+                groups.filter_map(CausticLobe::new).collect();
             found.sort_by(|a, b| b.fluence.total_cmp(&a.fluence));
             found.truncate(MOST);
             if found.is_empty() {
@@ -77,7 +79,7 @@ impl CausticLobes {
         caustic_lobes
     }
 
-    /// Those of a leaf.
+    /// Caustic lobes of a leaf.
     #[inline]
     pub(super) fn of(&self, leaf: u32) -> &[CausticLobe] {
         let Some(&(first, count)) = self.places.get(leaf as usize) else { return &[] };
@@ -86,7 +88,8 @@ impl CausticLobes {
 }
 
 impl CausticLobe {
-    /// Of the beams of one light off one metal in one leaf; `None` where they are too few.
+    /// Fits a lobe to the rays of one light off one specular surface in one leaf; `None` where they
+    /// are too few.
     fn new(segments: &[PhotonSegment]) -> Option<Self> {
         let fluence: f32 = segments.iter().map(|segment| segment.fluence).sum();
         if segments.len() < LEAST_RAYS || !(fluence > 0.0 && fluence.is_finite()) {
@@ -115,8 +118,8 @@ impl CausticLobe {
     }
 }
 
-/// The point that the lines of the beams come nearest to, in the mean of squares, and with little
-/// weight their images, which say how far away it is where the lines are parallel.
+/// The point nearest to the lines of the rays, in the mean of squares, and with little weight to
+/// their images, which tell the distance where the lines are parallel.
 fn meeting(segments: &[PhotonSegment], fluence: f32, center: Vec3A) -> Option<Vec3A> {
     let (mut matrix, mut right) = (Mat3A::ZERO, Vec3A::ZERO);
     for segment in segments {
@@ -134,7 +137,7 @@ fn meeting(segments: &[PhotonSegment], fluence: f32, center: Vec3A) -> Option<Ve
 mod tests {
     use super::*;
 
-    /// Rays that come from a point, seen in a leaf of half size 0.1 about the origin.
+    /// Rays from a point, as segments in a leaf of half size 0.1 about the origin.
     fn segments(from: Vec3A, image: Vec3A) -> Vec<PhotonSegment> {
         let at = |i: usize| 0.1 * Vec3A::from([0.7, 0.3, 0.9].map(|s| (s * i as f32).sin()));
         let segment = |i| {
@@ -145,9 +148,9 @@ mod tests {
     }
 
     #[test]
-    fn bundles_point_to_the_image_of_their_light() {
-        // Off a flat mirror, where the image is known; off a bent one, where only the rays tell; of
-        // the sun, whose rays are parallel.
+    fn lobes_point_to_the_image_of_their_light() {
+        // A flat mirror, with the image known; a bent one, where only the rays tell; the sun, whose
+        // rays are parallel.
         let near = Vec3A::new(0.5, -0.3, 0.8);
         let sun = 1e4 * Vec3A::new(0.6, 0.0, 0.8);
         for (from, image, error) in [(near, near, 1e-4), (near, 3.0 * near, 0.05), (sun, sun, 10.0)]
@@ -162,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn few_rays_and_faint_bundles_are_left_out() {
+    fn few_rays_and_faint_lobes_are_left_out() {
         let near = Vec3A::X;
         assert!(CausticLobes::new(segments(near, near)[..2].to_vec(), 9).of(8).is_empty());
         let many: Vec<PhotonSegment> = (0..6)

@@ -1,11 +1,11 @@
-//! Light that metals gather: rays from them, lit as the lights light them, that tell probes where
-//! bundles of light come from.
+//! Volume caustics: photons leave specular surfaces (metals of low roughness), with the power that
+//! lights give them there, and tell probes which directions caustics come from.
 //!
-//! A path that scatters in such a bundle finds its light only if it turns to the metal so that the
-//! light's image is ahead. Directions to that image are drawn beside those of chance, as photons
-//! have been used to guide paths since Jensen 1995 (*Importance Driven Path Tracing Using the
-//! Photon Map*), about a point instead of a direction after Ruppert et al. 2020 (*Robust Fitting of
-//! Parallax-Aware Mixtures for Path Guiding*). They guide and no more.
+//! A path that scatters in a caustic gathers its light only if it is scattered towards the specular
+//! surface so that the light's image is ahead. Directions to that image are drawn beside those of
+//! BSDF and phase sampling, as photons have been used to guide paths since Jensen 1995 (*Importance
+//! Driven Path Tracing Using the Photon Map*), about a point instead of a direction after Ruppert
+//! et al. 2020 (*Robust Fitting of Parallax-Aware Mixtures for Path Guiding*). Photons only guide.
 
 use glam::{UVec2, Vec2, Vec3A};
 use rayon::prelude::*;
@@ -25,17 +25,17 @@ use crate::{
     surface::{self, Bsdf, Hit, Material, Shape},
 };
 
-/// Rays from metals, all together.
+/// Photons from specular surfaces, all together.
 const RAYS: u32 = 1 << 14;
-/// Metals a ray may be thrown by.
-const MOST_METALS: u32 = 4;
-/// Roughness above which a metal gathers nothing that chance would miss.
+/// Most specular reflections of a photon.
+const MOST_REFLECTIONS: u32 = 4;
+/// Roughness α above which BSDF sampling finds the reflected light well enough.
 const MOST_ALPHA: f32 = 0.3;
-/// How far away a sun is taken to be, relative to the probes' cube.
+/// Distance at which a sun is placed, relative to the size of the probes' cube.
 const FAR: f32 = 100.0;
 
 impl Probes {
-    /// Finds the bundles of light that metals throw into the medium.
+    /// Traces photons and gives their caustics to the probes.
     ///
     /// # Errors
     /// [`Error::Cancelled`](crate::error::Error::Cancelled) where `progress` says so.
@@ -44,8 +44,8 @@ impl Probes {
         scene: &Scene,
         progress: Progress,
     ) -> Result<()> {
-        let metals = metals(scene);
-        if metals.is_empty() {
+        let specular_surfaces = specular_surfaces(scene);
+        if specular_surfaces.is_empty() {
             return Ok(());
         }
         let mut volumes = vec![0.0; self.len()];
@@ -59,11 +59,11 @@ impl Probes {
             volumes,
         };
         let cast = |i: u32| {
-            let metal = metals[i as usize % metals.len()];
+            let surface_index = specular_surfaces[i as usize % specular_surfaces.len()];
             report(progress, PLACED)?;
-            Ok(tracer.cast(metal, i).unwrap_or_default())
+            Ok(tracer.cast(surface_index, i).unwrap_or_default())
         };
-        let share = metals.len() as f32 / RAYS as f32;
+        let share = specular_surfaces.len() as f32 / RAYS as f32;
         let segments: Result<Vec<Vec<PhotonSegment>>> =
             (0..RAYS).into_par_iter().map(cast).collect();
         let mut segments = segments?.concat();
@@ -73,87 +73,87 @@ impl Probes {
     }
 }
 
-/// Indices of the surfaces that gather light.
-fn metals(scene: &Scene) -> Vec<u32> {
+/// Indices of the specular surfaces.
+fn specular_surfaces(scene: &Scene) -> Vec<u32> {
     let surfaces = scene.surfaces.iter().enumerate();
-    let shiny = surfaces.filter(|(_, surface)| gathers(surface.material));
+    let shiny = surfaces.filter(|(_, surface)| is_specular(surface.material));
     shiny.map(|(index, _)| index as u32).collect()
 }
 
-fn gathers(material: Material) -> bool {
+fn is_specular(material: Material) -> bool {
     matches!(material, Material::Conductor { alpha, reflectance }
         if alpha <= MOST_ALPHA && reflectance.max_element() > 0.0)
 }
 
-/// Throws rays.
+/// Traces photons off specular surfaces.
 struct PhotonTracer<'s> {
     scene: &'s Scene,
     emission_estimator: EmissionEstimator,
     probes: &'s Probes,
-    /// Of the leaves, by node.
+    /// Volumes of the leaves, by node.
     volumes: Vec<f32>,
 }
 
-/// Light on its way from a metal.
+/// A photon on its path from a specular surface.
 struct Photon {
-    /// The metal and the light.
+    /// The last specular surface and the light, by their indices in the scene.
     origin: (u32, u32),
     ray: Ray,
     power: f32,
-    /// Way from the light to the ray's origin.
-    way: f32,
+    /// Length of the path from the light to the ray's origin.
+    distance: f32,
 }
 
 impl PhotonTracer<'_> {
-    /// What ray number `index` brings to the leaves, if it is lit.
-    fn cast(&self, metal: u32, index: u32) -> Option<Vec<PhotonSegment>> {
+    /// Segments of photon number `index` in the leaves; `None` if no light reaches its surface.
+    fn cast(&self, surface_index: u32, index: u32) -> Option<Vec<PhotonSegment>> {
         let mut rng = PathRng::new(SEED, UVec2::new(index, 3), 0);
-        let mut photon = self.lit(metal, &mut rng)?;
+        let mut photon = self.lit(surface_index, &mut rng)?;
         let mut segments = Vec::new();
-        for _ in 0..MOST_METALS {
+        for _ in 0..MOST_REFLECTIONS {
             let end = surface::intersect(&self.scene.surfaces, &photon.ray);
             let t_max = end.as_ref().map_or(f32::INFINITY, |end| end.hit.t);
             let transmittance = self.deposit(&photon, t_max, &mut segments);
-            let Some(end) = end.filter(|end| gathers(end.surface.material)) else { break };
+            let Some(end) = end.filter(|end| is_specular(end.surface.material)) else { break };
             let Some(vertex) = Vertex::reflecting(&end, &photon.ray) else { break };
-            let Some(turn) = vertex.sample(&mut rng) else { break };
+            let Some(sample) = vertex.sample(&mut rng) else { break };
             photon = Photon {
                 origin: (end.index as u32, photon.origin.1),
-                ray: vertex.ray(turn.direction),
-                power: photon.power * transmittance * luminance(turn.weight),
-                way: photon.way + end.hit.t,
+                ray: vertex.ray(sample.direction),
+                power: photon.power * transmittance * luminance(sample.weight),
+                distance: photon.distance + end.hit.t,
             };
         }
         Some(segments)
     }
 
-    /// Light of one of the lights that a random point of a metal throws on.
-    fn lit(&self, metal: u32, rng: &mut PathRng) -> Option<Photon> {
-        let surface = &self.scene.surfaces[metal as usize];
+    /// A photon of one of the lights, reflected by a random point of a specular surface.
+    fn lit(&self, surface_index: u32, rng: &mut PathRng) -> Option<Photon> {
+        let surface = &self.scene.surfaces[surface_index as usize];
         let (point, normal, area) = self.point_on(&surface.shape, rng)?;
         let side = if rng.uniform() < 0.5 { normal } else { -normal };
         let hit = Hit { t: 0.0, point, normal: side };
         let from = Receiver { position: point + hit.offset() * side, normal: Some(side) };
-        let look = direct::estimate_light(self.scene, &self.emission_estimator, &from, rng)?;
-        let cosine = side.dot(look.direction);
+        let estimate = direct::estimate_light(self.scene, &self.emission_estimator, &from, rng)?;
+        let cosine = side.dot(estimate.direction);
         if cosine <= 0.0 {
             return None;
         }
-        let bsdf = Bsdf::new(surface.material, side, look.direction);
+        let bsdf = Bsdf::new(surface.material, side, estimate.direction);
         let vertex = Vertex::surface(&hit, bsdf);
-        let turn = vertex.sample(rng)?;
+        let sample = vertex.sample(rng)?;
         // Either side was chosen with probability 1/2.
-        let power = 2.0 * area * cosine * luminance(look.radiance * turn.weight);
+        let power = 2.0 * area * cosine * luminance(estimate.radiance * sample.weight);
         Some(Photon {
-            origin: (metal, look.light),
-            ray: vertex.ray(turn.direction),
+            origin: (surface_index, estimate.light),
+            ray: vertex.ray(sample.direction),
             power,
-            way: look.distance.min(FAR * self.probes.size()),
+            distance: estimate.distance.min(FAR * self.probes.size()),
         })
     }
 
-    /// A random point of a shape with its normal, and the area it stands for: of a plane without
-    /// end, what lies near the probes.
+    /// A random point of a shape with its normal, and the area it stands for: for an infinite
+    /// plane, the area near the probes.
     fn point_on(&self, shape: &Shape, rng: &mut PathRng) -> Option<(Vec3A, Vec3A, f32)> {
         let (pick, u) = (rng.uniform(), Vec2::new(rng.uniform(), rng.uniform()));
         if let Shape::Plane { point, normal } = shape {
@@ -168,11 +168,11 @@ impl PhotonTracer<'_> {
         Some((point, normal, shape.area()?))
     }
 
-    /// Adds what the ray brings to each leaf on its way; returns its transmittance, as the probes
-    /// think.
+    /// Adds the photon's fluence in each leaf along its ray; returns its transmittance, as the
+    /// probes estimate it.
     fn deposit(&self, photon: &Photon, t_max: f32, segments: &mut Vec<PhotonSegment>) -> f32 {
         let ray = &photon.ray;
-        let image = ray.origin - photon.way * ray.direction;
+        let image = ray.origin - photon.distance * ray.direction;
         let medium = self.scene.world.along(*ray, t_max);
         let mut passed = 1.0;
         self.probes.visit(medium, ray, |leaf, ray_piece| {

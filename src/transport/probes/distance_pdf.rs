@@ -1,21 +1,22 @@
-//! The density along one ray that the probes near it give: pieces, falling exponentially inside.
+//! The distance density along one ray that the probes near it give: pieces, each falling
+//! exponentially.
 
 use smallvec::SmallVec;
 
-/// Most pieces of a line; where there would be more, neighbors are joined.
+/// Most pieces of a density; where there would be more, neighbors are joined.
 const MOST_PIECES: usize = 64;
-/// Share that goes to all scattering matter on the ray alike, whatever the probes say. It bounds
-/// by its inverse what a place costs that the probes think dark.
-const SHARE_OF_MATTER: f32 = 0.1;
+/// Share of the density that follows the scattering majorant alone, whatever the probes estimate.
+/// Its inverse bounds the weights of places that the probes estimate as dark.
+const EVEN_SHARE: f32 = 0.1;
 
-/// A density over the parameter of a ray. The very same table draws and weighs.
+/// A density over the parameter of a ray. The same table is used for sampling and for evaluation.
 #[derive(Clone, Debug)]
 pub struct DistancePdf {
-    /// T of all of it, as the probes think.
+    /// Transmittance T along the whole ray, estimated from the probes.
     transmittance: f32,
-    /// Radiance scattered into it, as they think.
+    /// Radiance scattered into the ray, estimated from the probes.
     light: f32,
-    /// Second moment of an unguided flight's find of it, relative to the square of `light`.
+    /// Second moment of an unguided flight's contribution, relative to the square of `light`.
     spread: f32,
     pieces: SmallVec<[Piece; MOST_PIECES]>,
 }
@@ -23,7 +24,7 @@ pub struct DistancePdf {
 #[derive(Clone, Copy, Debug)]
 struct Piece {
     t0: f32,
-    /// Infinite at most in the last.
+    /// End of the piece; infinite only in the last one.
     t1: f32,
     /// The density falls as exp(−falloff (t − t0)).
     falloff: f32,
@@ -33,48 +34,49 @@ struct Piece {
     before: f32,
 }
 
-/// What a stretch of a ray is thought to hold.
+/// Estimates for a piece of a ray inside of one leaf and segment.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::transport) struct RayPiece {
-    /// Where it begins.
+    /// Ray parameter at which the piece begins.
     pub(super) t0: f32,
-    /// Where it ends; may be infinite.
+    /// Ray parameter at which the piece ends; may be infinite.
     pub(super) t1: f32,
     /// Extinction, 1/length.
     pub(super) mu_t: f32,
-    /// Upper bound of what it scatters, 1/length; zero only where nothing does.
+    /// Upper bound of scattering, 1/length; zero only where nothing scatters.
     pub(super) majorant: f32,
     /// Radiance scattered back along the ray, per length.
     pub(super) scattered: f32,
 }
 
 impl RayPiece {
-    /// exp(−τ) of it.
+    /// Transmittance exp(−τ) of the piece.
     pub(in crate::transport) fn transmittance(&self) -> f32 {
         (-self.mu_t * (self.t1 - self.t0)).exp()
     }
 
-    /// ∫ T dt over it, T being 1 where it begins.
+    /// ∫ T dt over the piece, T being 1 at its beginning.
     pub(in crate::transport) fn absorbed(&self) -> f32 {
         mass(self.mu_t, self.t1 - self.t0)
     }
 
-    /// The parameter in its middle.
+    /// Ray parameter of the middle of the piece.
     pub(in crate::transport) fn middle(&self) -> f32 {
         0.5 * (self.t0 + self.t1)
     }
 }
 
-/// Collects stretches from near to far.
+/// Collects pieces of a ray from near to far.
 #[derive(Debug)]
 pub(super) struct DistancePdfBuilder {
-    /// With the guess at their light in `share` and their matter in `before`.
+    /// Pieces with the estimate of their light in `share` and of their scattering majorant in
+    /// `before`.
     pieces: SmallVec<[Piece; MOST_PIECES]>,
-    /// exp(−τ) of all before.
+    /// Transmittance exp(−τ) of all pieces so far.
     transmittance: f32,
-    /// Σ light²/P, P the probability that an unguided flight ends in a stretch.
+    /// Σ light²/P, P the probability that an unguided flight ends in a piece.
     square: f32,
-    /// Stretches in a piece, and in the last one so far.
+    /// Number of added pieces that are joined to one, and of those in the last one so far.
     stride: u32,
     held: u32,
 }
@@ -84,7 +86,7 @@ impl DistancePdfBuilder {
         Self { pieces: SmallVec::new(), transmittance: 1.0, square: 0.0, stride: 1, held: 0 }
     }
 
-    /// Adds what comes next.
+    /// Adds the next piece of the ray.
     pub(super) fn add(&mut self, ray_piece: &RayPiece) {
         let RayPiece { t0, t1, mu_t, majorant, scattered } = *ray_piece;
         let depth = mu_t * (t1 - t0);
@@ -110,7 +112,7 @@ impl DistancePdfBuilder {
         }
     }
 
-    /// exp(−τ) of all that was added.
+    /// Transmittance exp(−τ) of all pieces that were added.
     pub(super) fn transmittance(&self) -> f32 {
         self.transmittance
     }
@@ -140,7 +142,7 @@ impl DistancePdfBuilder {
         for piece in &mut pieces {
             let even = piece.before / matter;
             let guided = if lit { piece.share / light } else { even };
-            piece.share = even + (1.0 - SHARE_OF_MATTER) * (guided - even);
+            piece.share = even + (1.0 - EVEN_SHARE) * (guided - even);
             piece.before = before;
             before += piece.share;
         }
@@ -149,25 +151,25 @@ impl DistancePdfBuilder {
     }
 }
 
-/// Two pieces that follow each other as one, both finite.
+/// Joins two adjacent finite pieces.
 fn joined(a: &Piece, b: &Piece) -> Piece {
     let (share, before) = (a.share + b.share, a.before + b.before);
     Piece { t0: a.t0, t1: b.t1, falloff: 0.0, share, before }
 }
 
 impl DistancePdf {
-    /// T of all of it, as the probes think.
+    /// Transmittance T along the whole ray, estimated from the probes.
     pub fn transmittance(&self) -> f32 {
         self.transmittance
     }
 
-    /// Radiance scattered into it, as the probes think; 0 where they know of none.
+    /// Radiance scattered into the ray, estimated from the probes; 0 where they estimate none.
     pub fn light(&self) -> f32 {
         self.light
     }
 
-    /// How much an unguided flight misses of that light: the variance of what it finds, relative to
-    /// the square of its mean. 0 where it finds the same whatever it does.
+    /// Variance of an unguided flight's contribution, relative to the square of its mean. 0 where
+    /// every flight contributes the same.
     pub fn missed(&self) -> f32 {
         (self.spread - 1.0).max(0.0)
     }
@@ -213,9 +215,9 @@ fn mass(falloff: f32, length: f32) -> f32 {
 mod tests {
     use super::*;
 
-    fn line(stretches: &[RayPiece]) -> DistancePdf {
+    fn line(pieces: &[RayPiece]) -> DistancePdf {
         let mut builder = DistancePdfBuilder::new();
-        stretches.iter().for_each(|ray_piece| builder.add(ray_piece));
+        pieces.iter().for_each(|ray_piece| builder.add(ray_piece));
         builder.finish().unwrap()
     }
 
@@ -234,8 +236,8 @@ mod tests {
         ])
     }
 
-    /// The density integrates to one, and samples lie where it says: the share of them below t is
-    /// its integral up to t.
+    /// The density integrates to one, and samples follow it: their share below t is its integral up
+    /// to t.
     #[test]
     fn samples_follow_the_density() {
         let line = mixed();
@@ -270,9 +272,9 @@ mod tests {
         assert_eq!((line.pdf(3.0), line.pdf(0.5)), (0.0, 0.0));
     }
 
-    /// However many stretches there are, the whole way is covered and the bright place stays so.
+    /// However many pieces there are, the whole ray is covered and the bright place stays bright.
     #[test]
-    fn many_stretches_are_joined() {
+    fn many_pieces_are_joined() {
         let all: Vec<RayPiece> = (0..1000)
             .map(|i| ray_piece(i as f32, i as f32 + 1.0, 1e-4, if i == 700 { 1e3 } else { 1.0 }))
             .collect();
@@ -283,7 +285,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_measured_gives_no_line() {
+    fn unusable_pieces_give_no_density() {
         assert!(DistancePdfBuilder::new().finish().is_none());
         let mut builder = DistancePdfBuilder::new();
         builder.add(&RayPiece { majorant: f32::NAN, ..ray_piece(0.0, 1.0, 1.0, 1.0) });

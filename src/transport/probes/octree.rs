@@ -1,4 +1,4 @@
-//! A cube cut into eight again and again where it pays, and the leaves along a ray.
+//! An octree over a cube, and its leaves along a ray.
 
 use glam::{IVec3, UVec3, Vec3A};
 
@@ -9,7 +9,7 @@ pub(super) const DEEPEST: u32 = 12;
 /// A ray moves on by at least this share of a leaf's edge, lest rounding hold it at a face.
 const LEAST_STEP: f32 = 1e-3;
 
-/// The tree. Nodes are known by their index; 0 is the root.
+/// The octree. Nodes are identified by their index; 0 is the root.
 #[derive(Clone, Debug)]
 pub(super) struct Octree {
     low: Vec3A,
@@ -18,12 +18,12 @@ pub(super) struct Octree {
     children: Vec<u32>,
 }
 
-/// What a ray meets at a point.
+/// Location of a point of a ray in the octree.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct OctreePoint {
     /// The leaf, none outside of the cube.
     pub(super) leaf: Option<u32>,
-    /// The ray parameter up to which the ray stays in it, or comes to the cube.
+    /// Ray parameter up to which the ray stays in the leaf, or at which it enters the cube.
     pub(super) t_end: f32,
 }
 
@@ -104,7 +104,8 @@ impl Octree {
         Some((node, place, depth))
     }
 
-    /// Where a ray that is outside of the cube at `t` comes to it.
+    /// Ray parameter at which a ray that is outside of the cube at `t` enters it; infinite if it
+    /// does not.
     fn entry(&self, ray: &Ray, t: f32) -> f32 {
         match self.bounds().intersect(ray, t, f32::INFINITY) {
             Some((t0, _)) => t0.max(t + LEAST_STEP * self.edge).max(t.next_up()),
@@ -113,7 +114,7 @@ impl Octree {
     }
 }
 
-/// Where `ray`, at `t` in the cube at `low`, leaves it.
+/// Ray parameter at which `ray`, at `t` in the cube at `low`, leaves it.
 fn exit(ray: &Ray, t: f32, low: Vec3A, edge: f32) -> f32 {
     let forward = ray.direction.cmpgt(Vec3A::ZERO);
     let face = Vec3A::select(forward, low + Vec3A::splat(edge), low);
@@ -153,9 +154,9 @@ mod tests {
         (tree, boxes)
     }
 
-    /// A ray's leaves follow each other without gaps, and each holds its stretch.
+    /// A ray's leaves follow each other without gaps, and each holds its piece of the ray.
     #[test]
-    fn leaves_along_a_ray_hold_their_stretches() {
+    fn leaves_along_a_ray_hold_their_pieces() {
         let (tree, boxes) = tree();
         let mut rng = PathRng::new(0, UVec2::ZERO, 0);
         let mut leaves = 0;

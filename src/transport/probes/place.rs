@@ -1,5 +1,5 @@
-//! Placing probes: leaves of an octree are cut where they stand for more than their part of the
-//! light that is scattered.
+//! Placing probes: leaves of an octree are cut where they stand for more than their share of the
+//! scattered light.
 
 use glam::{UVec2, Vec3A};
 use rayon::prelude::*;
@@ -22,7 +22,7 @@ use crate::transport::strategy::{Advanced, Distance, LightSelection, Strategy};
 const FIRST_LEVELS: u32 = 3;
 
 impl Probes {
-    /// Probes that know what is looked at from them, if the strategy of `scene` asks for any and
+    /// Probes with the light of light samples alone, if the strategy of `scene` asks for any and
     /// anything scatters.
     ///
     /// # Errors
@@ -59,8 +59,8 @@ impl Probes {
         Ok(Some(probes))
     }
 
-    /// What of a strategy decides the probes, all else put to its default: strategies that agree in
-    /// it have the same. `None` where it asks for none.
+    /// The part of a strategy that decides the probes, all else set to its default: strategies that
+    /// agree in it share their probes. `None` for a strategy without probes.
     pub fn recipe(strategy: &Strategy) -> Option<Strategy> {
         let asks = strategy.guides() || strategy.advanced.light_selection == LightSelection::Probes;
         let plain = Strategy::default();
@@ -87,7 +87,8 @@ impl Probes {
         })
     }
 
-    /// Whether the probes of `scene` are placed around its camera: in a fog without borders.
+    /// Whether the probes of `scene` depend on its camera: in a fog without borders they are placed
+    /// around it.
     pub fn heed_camera(scene: &Scene) -> bool {
         let mut instances = scene.world.instances().iter();
         instances.any(|instance| {
@@ -95,7 +96,7 @@ impl Probes {
         })
     }
 
-    /// Cuts leaves level by level where they stand for more than their part of the light.
+    /// Cuts leaves level by level where they stand for more than their share of the light.
     fn refine(&mut self, builder: &Builder<'_>, count: u32, progress: Progress) -> Result<()> {
         let mut level = vec![(0, self.octree.bounds())];
         let mut power: f32 = self.power_of(&level[0]);
@@ -153,10 +154,10 @@ impl Probes {
     }
 }
 
-/// What probes are made from.
+/// Builder of probes.
 struct Builder<'s> {
     scene: &'s Scene,
-    /// Looks at fire.
+    /// Walk that gathers the emission of volumes along shadow rays.
     emission_estimator: EmissionEstimator,
     /// Boxes of the volumes that may scatter.
     scattering: Vec<Aabb>,
@@ -169,7 +170,7 @@ impl Builder<'_> {
         Probe::new(self.scene, &self.emission_estimator, bounds, &mut rng)
     }
 
-    /// Those of the lights around a leaf.
+    /// Scores of the lights for a leaf.
     fn scores(&self, node: u32, bounds: &Aabb) -> Option<Scores> {
         scores::scores(self.scene, node, bounds)
     }
@@ -180,8 +181,8 @@ impl Builder<'_> {
     }
 }
 
-/// A box around what scatters, and the boxes of its volumes; `None` where nothing does. Of a fog
-/// that never ends, where it matters: around all else there is.
+/// A box around the scattering media, and the boxes of their volumes; `None` where nothing
+/// scatters. A fog without borders is cut to a box around everything else.
 fn support(scene: &Scene) -> Option<(Aabb, Vec<Aabb>)> {
     let scattering: Vec<Aabb> = scene
         .world

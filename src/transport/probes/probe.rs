@@ -1,4 +1,4 @@
-//! What a probe knows: the light that arrives around a place, and the matter there.
+//! A probe: estimates of the light that arrives around a place, and of the medium there.
 
 use std::f32::consts::{PI, TAU};
 
@@ -13,30 +13,30 @@ use crate::{
     volume::phase::henyey_greenstein,
 };
 
-/// Points in a probe from which lights are looked at.
+/// Points in a probe at which light samples are drawn.
 const POINTS: usize = 4;
-/// Points that are tried for matter until so many have some.
+/// Points that are tried until enough of them lie in a scattering medium.
 const TRIES: usize = 12;
-/// Light taken to have scattered about, relative to that found, until more is known.
+/// Indirect light assumed, relative to the direct light, until it is learned.
 const SHARE_OF_INDIRECT: f32 = 0.1;
-/// Largest mean cosine of indirect light: few paths may have come the same way by chance.
+/// Largest mean cosine of indirect light: a few paths may happen to have similar directions.
 const MOST_COSINE: f32 = 0.9;
-/// Density guessed, relative to its upper bound, where none was found.
+/// Density assumed, relative to its upper bound, where none was found.
 const LEAST_DENSITY: f32 = 0.02;
 
-/// What a probe knows of its surroundings. Its numbers guide, so that rough ones will do.
+/// Estimates of the light and the medium in a probe. Rough ones will do, since they only guide.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Probe {
     lobes: [DirectionalLobe; POINTS],
-    /// Light that has turned before it gets here.
+    /// Light that was scattered or reflected before it arrives.
     indirect: Indirect,
     /// Radiance of the environment, taken to come from everywhere.
     ambient: f32,
-    /// Mean cosine of the scattering.
+    /// Mean cosine of the phase function.
     g: f32,
     /// Mean extinction relative to its upper bound.
     pub(super) density: f32,
-    /// Share of it that scatters.
+    /// Mean single-scattering albedo, 0 to 1.
     pub(super) albedo: f32,
     /// Power scattered per volume, relative to 4π.
     power: f32,
@@ -45,7 +45,7 @@ pub(super) struct Probe {
 /// Light from one direction.
 #[derive(Clone, Copy, Debug)]
 struct DirectionalLobe {
-    /// Unit, towards where it comes from.
+    /// Unit direction towards the light.
     direction: Vec3A,
     /// ∫ L dω.
     fluence: f32,
@@ -56,9 +56,9 @@ struct DirectionalLobe {
 pub struct Indirect {
     /// ∫ L dω.
     fluence: f32,
-    /// ∫ L ω dω, ω towards where it comes from.
+    /// ∫ L ω dω, ω towards the light.
     flux: Vec3A,
-    /// Of the moments: unit direction and mean cosine to it.
+    /// Unit direction of `flux`; `cosine` is the mean cosine to it, both derived from the moments.
     axis: Vec3A,
     cosine: f32,
 }
@@ -70,7 +70,7 @@ impl Default for Indirect {
 }
 
 impl Indirect {
-    /// From everywhere.
+    /// Light that arrives evenly from all directions.
     fn even(fluence: f32) -> Self {
         Self { fluence, ..Self::default() }
     }
@@ -81,12 +81,12 @@ impl Indirect {
         self.merge(&Self { fluence, flux: fluence * direction, ..Self::default() }, 1.0);
     }
 
-    /// The same light, dimmed.
+    /// The light times a factor.
     pub fn scaled(&self, factor: f32) -> Self {
         Self { fluence: factor * self.fluence, flux: factor * self.flux, ..*self }
     }
 
-    /// Adds a multiple of another's.
+    /// Adds a multiple of another light.
     pub fn merge(&mut self, other: &Self, factor: f32) {
         self.fluence += factor * other.fluence;
         self.flux += factor * other.flux;
@@ -105,7 +105,7 @@ impl Indirect {
 }
 
 impl Probe {
-    /// Takes what was learned in place of what was guessed.
+    /// Replaces the assumed indirect light by the learned one.
     pub(super) fn learn(&mut self, indirect: &Indirect) {
         let before = self.radiance();
         self.indirect = *indirect;
@@ -113,7 +113,7 @@ impl Probe {
         self.power *= if grown.is_finite() { grown } else { 1.0 };
     }
 
-    /// Looks at the lights from points in `bounds`.
+    /// Estimates light and medium by light samples at points in `bounds`.
     pub(super) fn new(
         scene: &Scene,
         emission_estimator: &EmissionEstimator,
@@ -129,8 +129,8 @@ impl Probe {
             let scatters = matter.read(scene, point);
             // The last points are taken as they come.
             if found < POINTS && (scatters || TRIES - tried <= POINTS - found) {
-                lobes[found] = look(scene, emission_estimator, point, rng);
-                ambient += from_everywhere(scene, point, rng) / POINTS as f32;
+                lobes[found] = direct_light(scene, emission_estimator, point, rng);
+                ambient += environment_light(scene, point, rng) / POINTS as f32;
                 found += 1;
             }
         }
@@ -152,28 +152,28 @@ impl Probe {
         })
     }
 
-    /// ∫ L dω of what arrives straight from lights, and indirectly.
+    /// ∫ L dω of direct light, and of indirect light.
     pub(super) fn fluences(&self) -> [f32; 2] {
         [self.lobes.iter().map(|lobe| lobe.fluence).sum(), self.indirect.fluence]
     }
 
-    /// Mean cosine of the scattering.
+    /// Mean cosine of the phase function.
     pub(super) fn g(&self) -> f32 {
         self.g
     }
 
-    /// Radiance it scatters per length, whatever the direction.
+    /// Radiance scattered per length, averaged over directions.
     pub(super) fn power(&self) -> f32 {
         if self.power.is_finite() { self.power } else { 0.0 }
     }
 
-    /// Radiance scattered per unit of μ_s, whatever the direction.
+    /// Radiance scattered per unit of μ_s, averaged over directions.
     pub(super) fn radiance(&self) -> f32 {
         self.ambient + self.fluences().iter().sum::<f32>() / (4.0 * PI)
     }
 }
 
-/// Sums over the points that were tried.
+/// Sums of coefficients over the points that were tried.
 #[derive(Default)]
 struct MatterSums {
     majorant: f32,
@@ -183,7 +183,7 @@ struct MatterSums {
 }
 
 impl MatterSums {
-    /// Adds what is at a point; whether it scatters.
+    /// Adds the coefficients at a point; returns whether it scatters.
     fn read(&mut self, scene: &Scene, point: Vec3A) -> bool {
         let Some(at) = scene.world.matter_at(point) else { return false };
         let mu_s = mean(at.mu_s);
@@ -194,7 +194,7 @@ impl MatterSums {
         mu_s > 0.0
     }
 
-    /// g, density and albedo.
+    /// Means of g, density (relative to its upper bound) and albedo.
     fn means(&self) -> [f32; 3] {
         let share = |part: f32, whole: f32, least: f32| {
             let share = part / whole;
@@ -208,8 +208,8 @@ impl MatterSums {
     }
 }
 
-/// Light of one of the lights, drawn as a vertex there would draw it.
-fn look(
+/// Direct light at a point, by one light sample drawn as at a vertex.
+fn direct_light(
     scene: &Scene,
     emission_estimator: &EmissionEstimator,
     point: Vec3A,
@@ -217,15 +217,15 @@ fn look(
 ) -> DirectionalLobe {
     let from = Receiver { position: point, normal: None };
     match direct::estimate_light(scene, emission_estimator, &from, rng) {
-        Some(look) => {
-            DirectionalLobe { direction: look.direction, fluence: finite(luminance(look.radiance)) }
+        Some(nee) => {
+            DirectionalLobe { direction: nee.direction, fluence: finite(luminance(nee.radiance)) }
         }
         None => DirectionalLobe { direction: Vec3A::X, fluence: 0.0 },
     }
 }
 
-/// Radiance of the environment from a random direction.
-fn from_everywhere(scene: &Scene, point: Vec3A, rng: &mut PathRng) -> f32 {
+/// Radiance of the environment, attenuated, from a random direction.
+fn environment_light(scene: &Scene, point: Vec3A, rng: &mut PathRng) -> f32 {
     let radiance = luminance(scene.lights.environment);
     if radiance <= 0.0 {
         return 0.0;

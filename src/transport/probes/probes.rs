@@ -1,4 +1,4 @@
-//! The probes of a scene, and what can be read from them.
+//! The probes of a scene and their queries.
 
 use glam::Vec3A;
 
@@ -13,25 +13,25 @@ use crate::volume::world::MediumRay;
 
 /// Light outside of the octree, relative to its mean radiance inside.
 pub(super) const OUTSIDE: f32 = 0.05;
-/// Share of the directions that go towards the glow around the lights if all of their light is
-/// scattered.
+/// Share of the directions drawn towards lights (airlight) if all of their light is scattered.
 const MOST_AIRLIGHT: f32 = 0.5;
-/// Transmittance below which a line asks the probes no more.
+/// Transmittance below which a ray reads no more leaves.
 const DARK: f32 = 1e-4;
 
 /// The probes of a scene.
 #[derive(Clone, Debug)]
 pub struct Probes {
     pub(super) octree: Octree,
-    /// By node; those of inner nodes are what their leaves began as.
+    /// Probes by node; inner nodes keep the probe from before they were cut.
     pub(super) probes: Vec<Probe>,
-    /// Of the lights, by node, at leaves from where any is seen; empty if they are not asked for.
+    /// Scores of the lights, by node, at leaves from which any light is visible; empty if lights
+    /// are not chosen by probes.
     pub(super) scores: Vec<Option<Scores>>,
-    /// Bundles of light that metals throw.
+    /// Caustics: light that specular surfaces reflect into the medium.
     pub(super) caustic_lobes: CausticLobes,
     /// Radiance scattered outside of the octree per unit of μ_s.
     pub(super) outside: f32,
-    /// Mean cosine of what scatters most.
+    /// Mean cosine of the phase functions, weighted by scattered power.
     pub(super) mean_cosine: f32,
     /// Share of the lights' light that is scattered at least once.
     pub(super) scattered: f32,
@@ -43,8 +43,8 @@ impl Probes {
         self.octree.leaves()
     }
 
-    /// Takes what was learned of the indirect light. Half of it from the eight of a cut together:
-    /// each alone has seen few paths.
+    /// Gives probes their learned indirect light, half of it averaged over the eight leaves of a
+    /// cut: each alone has few paths.
     pub(in crate::transport) fn learn(&mut self, learned: &[(u32, Indirect)]) {
         let family = |node: u32| node.div_ceil(8) as usize;
         let mut families = vec![(Indirect::default(), 0.0); family(self.probes.len() as u32) + 1];
@@ -64,7 +64,7 @@ impl Probes {
         self.mean_cosine = self.weighted_cosine();
     }
 
-    /// Those of the lights around a point, if lights are chosen by them there.
+    /// Scores of the lights around a point, if lights are chosen by probes there.
     pub fn scores(&self, point: Vec3A) -> Option<&Scores> {
         if self.scores.is_empty() {
             return None;
@@ -77,17 +77,17 @@ impl Probes {
         self.probes.len()
     }
 
-    /// Whether there are none, which does not happen.
+    /// Whether there are no probes, which does not happen.
     pub fn is_empty(&self) -> bool {
         self.probes.is_empty()
     }
 
-    /// Mean cosine of the scattering, as the probes see it.
+    /// Mean cosine of the phase functions, weighted by scattered power.
     pub fn mean_cosine(&self) -> f32 {
         self.mean_cosine
     }
 
-    /// Share of the directions after scattering that are best drawn from the glow around a light.
+    /// Share, 0 to 1, of the directions after scattering that are drawn towards airlight.
     pub fn share_of_airlight(&self) -> f32 {
         MOST_AIRLIGHT * self.scattered
     }
@@ -104,7 +104,7 @@ impl Probes {
         sum / self.probes.len() as f32
     }
 
-    /// The density along `ray` whose medium is given; `None` where nothing scatters.
+    /// The distance density along `ray` through `medium`; `None` where nothing scatters.
     pub fn along(&self, medium: MediumRay, ray: &Ray) -> Option<DistancePdf> {
         let mut distance_pdf = DistancePdfBuilder::new();
         let mut last = None;
@@ -120,9 +120,9 @@ impl Probes {
         distance_pdf.finish()
     }
 
-    /// Calls `found` with the stretches along `ray` whose medium is given, from near to far, each
-    /// with the leaf it lies in and with μ_s in place of what is scattered. It says what of the
-    /// light is left behind them: where that is dark, leaves are told apart no more.
+    /// Calls `found` with the pieces of `ray` in `medium`, from near to far, each with the leaf it
+    /// lies in and with μ_s in place of the scattered radiance. `found` returns the transmittance
+    /// up to the end of the piece: once that is dark, leaves are no longer told apart.
     pub(in crate::transport) fn visit(
         &self,
         mut medium: MediumRay,
@@ -148,23 +148,23 @@ impl Probes {
         }
     }
 
-    /// Radiance thought to be scattered at a point back along a ray of the unit `direction`, per unit
+    /// Estimated radiance scattered at a point back along a ray of the unit `direction`, per unit
     /// of μ_s.
     pub fn radiance_at(&self, point: Vec3A, direction: Vec3A) -> f32 {
         self.radiance(self.octree.leaf_at(point), direction)
     }
 
-    /// What is known of the light around a point; `None` outside of the octree.
+    /// Estimates of the light around a point; `None` outside of the octree.
     pub(in crate::transport) fn around(&self, point: Vec3A) -> Option<Surroundings<'_>> {
         let leaf = self.octree.leaf_at(point)?;
         let probe = &self.probes[leaf as usize];
         let caustic_lobes = self.caustic_lobes.of(leaf);
-        let bundled: f32 = caustic_lobes.iter().map(|lobe| lobe.fluence).sum();
+        let caustic: f32 = caustic_lobes.iter().map(|lobe| lobe.fluence).sum();
         let [direct, indirect] = probe.fluences();
-        Some(Surroundings { caustic_lobes, direct, indirect: (indirect - bundled).max(0.0) })
+        Some(Surroundings { caustic_lobes, direct, indirect: (indirect - caustic).max(0.0) })
     }
 
-    /// Takes bundles of light.
+    /// Builds the caustics from the segments of photons.
     pub(in crate::transport) fn take_photon_segments(&mut self, segments: Vec<PhotonSegment>) {
         self.caustic_lobes = CausticLobes::new(segments, self.probes.len());
     }
@@ -174,7 +174,7 @@ impl Probes {
         self.octree.bounds().diagonal()
     }
 
-    /// The middle of that cube.
+    /// Center of the cube that the probes fill.
     pub(in crate::transport) fn center(&self) -> Vec3A {
         self.octree.bounds().center()
     }
@@ -185,7 +185,7 @@ impl Probes {
         })
     }
 
-    /// The part of a segment between two parameters, inside of a leaf.
+    /// Estimates for the part of a segment between two parameters, inside of a leaf.
     fn ray_piece(
         &self,
         medium: &MediumRay,
@@ -215,11 +215,11 @@ impl Probes {
 /// The light around a point, as ∫ L dω of its parts.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::transport) struct Surroundings<'p> {
-    /// Bundles of light that metals throw.
+    /// Caustics: light that specular surfaces reflect into the medium.
     pub(in crate::transport) caustic_lobes: &'p [CausticLobe],
-    /// What comes straight from lights.
+    /// Direct light.
     pub(in crate::transport) direct: f32,
-    /// All else.
+    /// Indirect light other than the caustics.
     pub(in crate::transport) indirect: f32,
 }
 

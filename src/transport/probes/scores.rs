@@ -1,5 +1,5 @@
-//! Scores of the lights around a probe, by looks at them from places in it: what is hidden scores
-//! nothing, and what smoke dims scores less.
+//! Scores of the lights around a probe, by shadow rays from points in it: hidden lights score
+//! nothing, lights dimmed by smoke score less.
 
 use glam::{UVec2, Vec3A};
 
@@ -9,22 +9,22 @@ use crate::{
     transport::{direct, scene::Scene},
 };
 
-/// Looks at the lights from each probe.
-const LOOKS: u32 = 32;
-/// Places that are tried for one that scatters before a look is taken from any.
+/// Shadow rays to lights from each probe.
+const SHADOW_RAYS: u32 = 32;
+/// Points that are tried for one that scatters before a shadow ray starts from any.
 const TRIES: u32 = 3;
 
-/// Those of the lights around `bounds`, for the probe of a node; `None` where none is seen. The
-/// lights are chosen by the hierarchy, evenly spread over its choices.
+/// Scores of the lights around `bounds`, for the probe of a node; `None` where no light is visible.
+/// The lights are chosen by the hierarchy, evenly spread over its choices.
 pub(super) fn scores(scene: &Scene, node: u32, bounds: &Aabb) -> Option<Scores> {
     let mut rng = PathRng::new(super::stages::SEED, UVec2::new(node, 1), 1);
     let offset = f64::from(rng.uniform());
-    let look = |look: u32| {
-        let pick = (f64::from(look) + offset) / f64::from(LOOKS);
+    let shadow_ray = |index: u32| {
+        let pick = (f64::from(index) + offset) / f64::from(SHADOW_RAYS);
         let from = Receiver { position: place(scene, bounds, &mut rng), normal: None };
         direct::visibility(scene, &from, pick, &mut rng)
     };
-    let mut visibilities: Vec<Visibility> = (0..LOOKS).filter_map(look).collect();
+    let mut visibilities: Vec<Visibility> = (0..SHADOW_RAYS).filter_map(shadow_ray).collect();
     Scores::new(&mut visibilities)
 }
 

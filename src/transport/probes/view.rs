@@ -1,4 +1,4 @@
-//! The probes as diagnostics show them: read only, and only the leaves, which are those that guide.
+//! Read-only view of the probes for diagnostics: only the leaves, which are the probes that guide.
 
 use glam::Vec3A;
 
@@ -8,18 +8,18 @@ use super::probe::Probe;
 use super::probes::{Probes, in_scattered};
 use crate::math::Aabb;
 
-/// A probe in its place.
+/// A probe with its cube.
 #[derive(Clone, Copy, Debug)]
 pub struct ProbeView<'p> {
-    /// The cube it stands for, in the world.
+    /// Cube of the probe, in world space.
     pub bounds: Aabb,
     probe: &'p Probe,
     caustic_lobes: &'p [CausticLobe],
 }
 
 impl ProbeView<'_> {
-    /// Its score for a ray of the unit `direction`: the radiance that its matter is thought to
-    /// scatter back along the ray, μ_s ∫ L ρ dω, per length. 0 where none was found.
+    /// Score of the probe for a ray of the unit `direction`: the estimated radiance scattered back
+    /// along the ray, μ_s ∫ L ρ dω, per length. 0 where nothing scatters.
     pub fn score(&self, direction: Vec3A) -> f32 {
         // The power is μ_s times the radiance.
         let mu_s = self.probe.power() / self.probe.radiance();

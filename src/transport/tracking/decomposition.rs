@@ -12,13 +12,13 @@ use crate::{
 };
 
 /// Decomposition tracking (Kutz et al. 2017, section 4): μ_t = μ_c + μ_r, with the control μ_c the
-/// lower bound of μ_t in each segment, so that a collision with it is real without a look at the
-/// medium. Both components' collisions come from one process of rate μ̄, of which a share
-/// P_c ∝ the channels' mean of w·μ_c is the control's; among the rest, P ∝ the mean of w·μ_r and of
-/// w·μ_n, as [`super::scattering::scatter`] chooses. Uniform segments are all control: their closed form.
+/// lower bound of μ_t in each segment, so that a collision with it is real without a read of the
+/// medium. Both components' collisions come from one process of rate μ̄, of which a share P_c ∝ the
+/// channels' mean of w·μ_c is the control's; among the rest, P ∝ the mean of w·μ_r and of w·μ_n, as
+/// [`super::scattering::scatter`] chooses. Uniform segments are all control: their closed form.
 ///
-/// Unbiased in every channel. It gathers no emission, and where the control scatters it does not
-/// know μ_t, so that the density of the flight, `pdf_null`, stays unknown and 0.
+/// Unbiased in every channel. It gathers no emission, and where the control scatters μ_t is
+/// unknown, so that the density of the flight, `pdf_null`, stays unknown and 0.
 ///
 /// The first step is `optical_distance` long, which has density exp(-x).
 pub fn scatter(

@@ -1,22 +1,22 @@
-//! How a flight through the medium ends, and what it brings.
+//! The event at the end of a flight through the medium, and the flight's contribution.
 
 use crate::math::Rgb;
 use crate::transport::strategy::Strategy;
 use crate::volume::phase::PhaseMix;
 
-/// Where the scattering walk gathers emission.
+/// Events at which the scattering walk gathers emission.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EmissionGathering {
-    /// On absorption, which ends the path (the baseline).
+    /// Absorption, which ends the path (the baseline).
     Absorption,
-    /// At every tentative collision (decoupled).
+    /// Every tentative collision (decoupled).
     EveryCollision,
-    /// Nowhere: the emission has its own walk.
+    /// None: the emission has its own walk.
     Nothing,
 }
 
 impl EmissionGathering {
-    /// The toggles' choice for the scattering walk; ratio tracking overrides decoupling.
+    /// The events that the toggles choose; ratio tracking overrides decoupling.
     pub fn of(strategy: &Strategy) -> Self {
         if strategy.emission_ratio_tracking {
             Self::Nothing
@@ -28,24 +28,24 @@ impl EmissionGathering {
     }
 }
 
-/// How a flight through the medium ended.
+/// Event at the end of a flight through the medium.
 #[derive(Clone, Debug)]
 pub enum Event {
-    /// It reached the end of the ray.
+    /// The flight reached the end of the ray.
     Reached,
-    /// It was absorbed.
+    /// The path was absorbed.
     Absorbed {
         /// Ray parameter of the collision.
         t: f32,
-        /// True where the medium absorbs; false where the event only shows emission that comes
+        /// True where the medium absorbs; false where the event only gathers emission that comes
         /// without absorption, and where nothing is left to follow.
         real: bool,
     },
-    /// It scatters.
+    /// The path scatters.
     Scattered {
         /// Ray parameter of the collision.
         t: f32,
-        /// Phase function there.
+        /// Phase function at the collision.
         phase: PhaseMix,
     },
 }
@@ -53,17 +53,17 @@ pub enum Event {
 /// One flight: from a vertex to the next event on a ray.
 #[derive(Clone, Debug)]
 pub struct Flight {
-    /// How it ended.
+    /// Event at the end of the flight.
     pub event: Event,
     /// Factor of the path's throughput up to and including the event, over the density of the
     /// scattering walk.
     pub weight: Rgb,
-    /// Emission gathered on the way, as [`EmissionGathering`] says.
+    /// Emission gathered along the flight, at the events of [`EmissionGathering`].
     pub emission: Rgb,
     /// Density, 1/length, with which the scattering walk scatters at the event, given the tentative
     /// collisions before it and apart from their own density: Π P_n · μ̄ P_s. 0 from decomposition
-    /// tracking, which does not know it.
+    /// tracking, for which it is unknown.
     pub pdf_null: f32,
-    /// Tentative collisions on the way.
+    /// Tentative collisions of the flight.
     pub collisions: u32,
 }

@@ -10,11 +10,11 @@ use crate::transport::strategy::Strategy;
 use crate::volume::medium::Segment;
 use crate::volume::world::MediumRay;
 
-/// Fills the way to a scattering event at parameter `t`, however that was drawn, by ratio tracking:
-/// tentative collisions at the rate μ̄, all of them null (P_n = 1). The flight's density is the one
-/// that the scattering walk would have had, with *its* P_n and P_s at the same drawn coefficients,
-/// and its weight is over that density. It gathers no emission: where that is gathered is up to the
-/// scattering walk alone. Ends lost, with weight 0, where nothing scatters.
+/// Fills the distance to a scattering event at parameter `t`, however that was drawn, by ratio
+/// tracking: tentative collisions at the rate μ̄, all of them null (P_n = 1). The flight's density
+/// is the one that the scattering walk would have had, with *its* P_n and P_s at the same drawn
+/// coefficients, and its weight is over that density. The walk gathers no emission, which is left
+/// to the scattering walk. Ends lost, with weight 0, where nothing scatters.
 pub fn fill(
     medium: MediumRay,
     strategy: &Strategy,
@@ -32,7 +32,7 @@ pub fn fill(
 
 struct Fill {
     state: FlightState,
-    /// Where the event is.
+    /// Ray parameter of the event.
     until: f32,
     /// The event, once the walk has got there.
     event: Option<Event>,

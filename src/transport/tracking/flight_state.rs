@@ -25,7 +25,7 @@ pub(super) struct FlightState {
     pub(super) weight: Rgb,
     /// Π P_n so far, and T of the uniform segments that have no null collisions.
     null_probability: f32,
-    /// T of such a segment, if the walk is in one.
+    /// Transmittance of such a segment, if the walk is in one.
     null_probability_ahead: f32,
     /// Density of the flight once it scatters; 0 before.
     pub(super) pdf_null: f32,
@@ -113,7 +113,7 @@ impl FlightState {
             Rgb::select(escape.clear, Rgb::ZERO, self.weight / (1.0 - escape.probability));
     }
 
-    /// Whether one channel stands for all, and absorption for nothing.
+    /// Whether one channel stands for all and no emission is gathered by absorption.
     #[inline]
     pub(super) fn is_gray(&self, segment: &Segment) -> bool {
         segment.gray && self.gathering == EmissionGathering::Nothing
@@ -193,8 +193,8 @@ impl FlightState {
     /// Where emission is not gathered by absorption, a real collision always scatters, and the
     /// weight carries the albedo: a path that lives on dimly beats one that mostly dies.
     ///
-    /// Where absorption alone shows the emission, it happens as often as μ_a says, and often
-    /// enough to show it: ε may be positive with little or no μ_a. The other events make up for
+    /// Where absorption alone gathers the emission, it is chosen in proportion to μ_a, and often
+    /// enough to gather it: ε may be positive with little or no μ_a. The other events make up for
     /// that share by their weights, so that the floor absorbs nothing by itself.
     #[inline]
     pub(super) fn probabilities(

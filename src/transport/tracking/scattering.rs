@@ -21,9 +21,9 @@ use crate::volume::world::MediumRay;
 /// path's density the mean of f over the channels, and its weight f_c / mean f (Miller et al.
 /// 2019).
 ///
-/// With the tracker `spectral` it is P ∝ the largest channel of μ instead, whatever the path has
-/// come through (the same paper's section 5.1, maximum probabilities): spectral tracking, whose
-/// weights grow with every collision that the channels disagree at. Gray media take it for `delta`.
+/// With the tracker `spectral` it is P ∝ the largest channel of μ instead, whatever the path's
+/// color (the same paper's section 5.1, maximum probabilities): spectral tracking, whose weights
+/// grow with every collision that the channels disagree at. Gray media take it for `delta`.
 pub fn scatter(
     medium: MediumRay,
     strategy: &Strategy,
@@ -110,7 +110,7 @@ impl Scattering {
         Self { state, emission: Rgb::ZERO, event: Event::Reached }
     }
 
-    /// The flight that the walk has come to.
+    /// The finished flight.
     pub(super) fn flight(self, collisions: u32) -> Flight {
         let FlightState { weight, pdf_null, .. } = self.state;
         Flight { event: self.event, weight, emission: self.emission, pdf_null, collisions }

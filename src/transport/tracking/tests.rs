@@ -18,14 +18,15 @@ use crate::volume::procedural::Noise;
 use crate::volume::world::{Instance, World};
 use crate::volume::{MediumProperties, Region, Volume};
 
-/// Every tentative collision of a walk that shares another's random numbers, and what there is.
+/// Recorder of every tentative collision of a walk with another's random numbers, and of the
+/// coefficients there.
 struct Recorder {
-    /// None where emission is no matter of the walk.
+    /// None where the walk gathers no emission.
     majorant: Option<EmissionMajorant>,
     until: f32,
     /// Whether the walk drew a number at each collision.
     draws: bool,
-    /// Where the other walk had its event by chance.
+    /// Ray parameter of the other walk's event.
     event: f32,
     collisions: Vec<(f32, f32)>,
 }
@@ -66,7 +67,7 @@ fn smoke(density: Rgb, albedo: Rgb, emission: Emission) -> World {
     World::new(vec![Instance::new(Arc::new(volume), Affine3A::IDENTITY)])
 }
 
-/// Paths with an event, by chance and filled, whose density was checked.
+/// Number of paths with an event, by null-collision sampling and filled, whose density was checked.
 fn check_densities(world: &World, strategy: &Strategy, throughput: Rgb) -> [u32; 2] {
     let gather = EmissionGathering::of(strategy);
     let boosted = gather == EmissionGathering::EveryCollision;
@@ -112,10 +113,9 @@ fn check_densities(world: &World, strategy: &Strategy, throughput: Rgb) -> [u32;
     checked
 }
 
-/// What the walk says of its density, by chance or filled, is the product along it, evaluated
-/// directly: per channel Π (μ_n/μ̄) · μ, and over the channels the mean of it by the color the
-/// path came with. For gray and colored smoke, whatever gathers emission, for thousands of
-/// paths.
+/// The density that a walk returns, by null-collision sampling or filled, is the product along it,
+/// evaluated directly: per channel Π (μ_n/μ̄) · μ, and over the channels its mean by the color of
+/// the path. For gray and colored smoke, whatever gathers emission, for thousands of paths.
 #[test]
 fn the_density_of_a_path_is_the_product_along_it() {
     let full = Preset::Full.strategy();

@@ -1,4 +1,4 @@
-//! The mean over all jitters is exp(−τ), at every point of a way and whatever the majorants.
+//! The mean over all jitters is exp(−τ), at every point of a ray and whatever the majorants.
 
 use std::sync::Arc;
 
@@ -13,12 +13,12 @@ use crate::volume::procedural::Noise;
 use crate::volume::world::{Instance, World};
 use crate::volume::{MediumProperties, Region, Volume};
 
-/// Largest |z|: of the 150 comparisons here one fails by chance once in 10 000 sets of jitters.
+/// Largest |z|: of the 150 comparisons here one fails at random once in 10 000 sets of jitters.
 const Z_LIMIT: f64 = 5.0;
-/// Where T̂ is read along the way.
+/// Ray parameters at which T̂ is read.
 const PLACES: [f32; 5] = [0.9, 1.4, 2.05, 2.6, 3.2];
-/// Ways along which it is estimated.
-const WAYS: u32 = 60_000;
+/// Independent estimates.
+const ESTIMATES: u32 = 60_000;
 
 /// Noise of high contrast in cells far larger than its details, and a uniform ball in its middle.
 fn world(noise_scale: Rgb, ball: f32) -> World {
@@ -74,27 +74,27 @@ fn expected(world: &World, ray: &Ray) -> [DVec3; 5] {
 fn estimates(world: &World, ray: Ray, reads: f32, loose: f32, index: u32) -> [DVec3; 5] {
     let mut rng = PathRng::new(0, UVec2::ZERO, index);
     let jitters = [rng.at(Slot::TransmittanceA), rng.at(Slot::TransmittanceB)];
-    let mut way = Transmittance::new(reads, jitters, &mut rng);
+    let mut estimate = Transmittance::new(reads, jitters, &mut rng);
     let mut medium = world.along(ray, f32::INFINITY);
     let mut found = [DVec3::ZERO; 5];
     let mut place = 0;
     while let Some(segment) = medium.next_segment() {
         let mut t = segment.t0;
         loop {
-            // Gaps before the segment bring nothing.
+            // Gaps before the segment add nothing.
             while place < PLACES.len() && PLACES[place] <= t {
-                found[place] = way.estimate().as_dvec3();
+                found[place] = estimate.estimate().as_dvec3();
                 place += 1;
             }
             let next = PLACES.get(place).map_or(segment.t1, |&p| p.min(segment.t1));
             let goes_on = if segment.uniform {
                 let part = Segment { t0: t, t1: next, ..segment };
-                way.cross_uniform(medium.coefficients(t).mu_t, &part, &mut rng)
+                estimate.cross_uniform(medium.coefficients(t).mu_t, &part, &mut rng)
             } else {
-                way.advance(&medium, loose * segment.majorant, t, next, &mut rng)
+                estimate.advance(&medium, loose * segment.majorant, t, next, &mut rng)
             };
             if goes_on.is_break() {
-                // Nothing more is seen.
+                // The walk has ended.
                 return found;
             }
             t = next;
@@ -103,7 +103,7 @@ fn estimates(world: &World, ray: Ray, reads: f32, loose: f32, index: u32) -> [DV
             }
         }
     }
-    found[place..].fill(way.estimate().as_dvec3());
+    found[place..].fill(estimate.estimate().as_dvec3());
     found
 }
 
@@ -112,14 +112,14 @@ fn check(noise_scale: Rgb, ball: f32, reads: f32, loose: f32) {
     let ray = Ray::new(Vec3A::new(-1.6, 0.11, -0.23), Vec3A::new(1.0, 0.06, 0.04).normalize());
     let expected = expected(&world, &ray);
     let (mut sums, mut squares) = ([DVec3::ZERO; 5], [DVec3::ZERO; 5]);
-    for index in 0..WAYS {
+    for index in 0..ESTIMATES {
         let found = estimates(&world, ray, reads, loose, index);
         for (place, value) in found.into_iter().enumerate() {
             sums[place] += value;
             squares[place] += value * value;
         }
     }
-    let n = f64::from(WAYS);
+    let n = f64::from(ESTIMATES);
     for (place, expected) in expected.into_iter().enumerate() {
         let mean = sums[place] / n;
         let variance = (squares[place] / n - mean * mean).max(DVec3::ZERO) / (n - 1.0);
@@ -157,11 +157,11 @@ fn loose_majorants() {
 }
 
 #[test]
-fn a_uniform_ball_in_the_way() {
+fn a_uniform_ball_in_the_noise() {
     check(Rgb::new(1.0, 2.0, 0.5), 1.5, 1.0, 1.0);
 }
 
-/// A comb has one place in each unit of its measure, wherever the way is cut.
+/// A comb has one place in each unit of its measure, wherever the ray is cut.
 #[test]
 fn combs_read_once_in_each_unit() {
     for jitter in [0.0, 0.3, 0.99] {

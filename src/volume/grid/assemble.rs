@@ -1,4 +1,4 @@
-//! From leaves and tiles to bricks and their index.
+//! Assembles leaves and tiles into bricks and their index.
 //!
 //! A brick takes its samples from the block that it covers and the seven blocks after it. Where
 //! these are all constants, the brick is determined by the eight constants and shared by all that
@@ -19,13 +19,13 @@ use crate::error::{Error, Progress, Result};
 
 /// Blocks along the edge of a node with the first of the next one.
 const REACH: usize = NODE_EDGE as usize + 1;
-/// Bricks filled between two looks at whether the work was cancelled.
+/// Bricks filled between two checks for cancellation.
 const BRICKS_PER_STEP: usize = 256;
 
-/// A place and its seven followers, counted in binary, z lowest.
+/// A block or node and its seven followers, counted in binary, z lowest.
 type Octet = [BlockOrigin; 8];
 
-/// Which octets make the bricks and nodes, numbered in the order of their first appearance.
+/// The octets that make the bricks and nodes, numbered in the order of their first appearance.
 struct Plan {
     bricks: Vec<Octet>,
     shared_bricks: HashMap<Octet, u32>,

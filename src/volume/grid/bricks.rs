@@ -12,13 +12,13 @@ const EDGE: usize = 9;
 const STRIDE_X: usize = EDGE * EDGE;
 const STRIDE_Y: usize = EDGE;
 const SAMPLES: usize = EDGE * EDGE * EDGE;
-/// Where the last of the eight corners of a cell lies, counted from the first.
+/// Offset in memory of the last of the eight corners of a cell from the first.
 const CELL_SPAN: usize = STRIDE_X + STRIDE_Y + 1;
 
 /// The samples of a brick, z fastest.
 pub(super) type Brick<V> = [V; SAMPLES];
 
-/// Where the values of a block of 8x8x8 voxels come from.
+/// Source of the values of a block of 8x8x8 voxels.
 #[derive(Clone, Copy)]
 pub(super) enum BrickSource<'a, V> {
     Constant(V),

@@ -21,7 +21,7 @@ const LEAF_EDGE: i32 = 8;
 /// A node costs a few hundred bytes while the grid is built, so this keeps tiles near 1 GiB.
 const MAX_TILE_NODES: u64 = 1 << 22;
 
-/// Leaves summed up between two looks at whether the work was cancelled.
+/// Leaves summed up between two checks for cancellation.
 const LEAVES_PER_STEP: usize = 256;
 
 /// Gathers the leaves and tiles of a grid, which are not meant to overlap; leaves win over tiles.

@@ -1,4 +1,4 @@
-//! How often each value occurs in a grid.
+//! Histogram of the values of a grid.
 
 use rayon::prelude::*;
 
@@ -10,13 +10,13 @@ use glam::IVec3;
 /// Parts of equal width that a range of values is divided into.
 pub const BINS: usize = 32;
 
-/// How many values fall into each part.
+/// Number of values in each part.
 pub type Histogram = [u64; BINS];
 
 impl<V: Voxel> SparseGrid<V> {
-    /// How many voxels have a value in each of [`BINS`] equal parts of `low..=high`; of vectors
-    /// the largest component counts. Voxels that hold the background are passed over, for most of
-    /// space is such.
+    /// Number of voxels with a value in each of [`BINS`] equal parts of `low..=high`; for vectors
+    /// the largest component counts. Voxels that hold the background are passed over, as most of
+    /// space does.
     pub fn histogram(&self, [low, high]: [f32; 2]) -> Histogram {
         let uses = self.index.brick_uses(self.bricks.len());
         let scale = BINS as f32 / (high - low).max(f32::MIN_POSITIVE);

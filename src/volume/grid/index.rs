@@ -1,10 +1,10 @@
-//! From a position to the brick that holds it, in memory that follows the data.
+//! Index of bricks: the brick that holds a position, in memory that grows with the stored data.
 
 use glam::{IVec3, UVec3};
 
 use super::index_box::IndexBox;
 
-/// log2 of the bricks along the edge of a node, of a brick's edge and of a node's, in voxels.
+/// log2 of the bricks along the edge of a node; below, of a brick's edge and of a node's in voxels.
 const NODE_BITS: i32 = 4;
 const BRICK_BITS: i32 = 3;
 const NODE_VOXEL_BITS: i32 = NODE_BITS + BRICK_BITS;
@@ -34,7 +34,7 @@ pub(super) fn node_box(position: IVec3) -> IndexBox {
     IndexBox { min, max: min + ((1 << NODE_VOXEL_BITS) - 1) }
 }
 
-/// The place of a voxel's brick in its node.
+/// Index of a voxel's brick in its node.
 #[inline(always)]
 pub(super) fn brick_in_node(voxel: IVec3) -> usize {
     let [x, y, z] =
@@ -42,8 +42,8 @@ pub(super) fn brick_in_node(voxel: IVec3) -> usize {
     (x << (2 * NODE_BITS) | y << NODE_BITS | z) & (NODE_BRICKS - 1)
 }
 
-/// Two levels: nodes of 16x16x16 bricks, and a table of nodes over the data's box or, where the
-/// data is scattered too far apart for that, a sorted list of them. Number 0 is, for nodes and
+/// Two-level index: nodes of 16x16x16 bricks, and a table of nodes over the data's box or, where
+/// the data is scattered too far apart for that, a sorted list of them. Number 0 is, for nodes and
 /// bricks, the background.
 pub(super) struct Index {
     table: IndexTable,
@@ -60,12 +60,12 @@ enum IndexTable {
         strides: [usize; 2],
         ids: Vec<u32>,
     },
-    /// Sorted by position.
+    /// A list of nodes, sorted by position.
     Sparse { positions: Vec<[i32; 3]>, ids: Vec<u32> },
 }
 
 impl Index {
-    /// `entries` are positions and numbers of nodes, sorted by [x, y, z], none twice.
+    /// An index over `entries`, positions and numbers of nodes, sorted by [x, y, z], none twice.
     pub fn new(entries: &[(IVec3, u32)], nodes: Vec<BrickNumbers>) -> Self {
         let bounds = entries
             .iter()
@@ -134,7 +134,7 @@ impl Index {
         }
     }
 
-    /// How often each of `bricks` bricks stands somewhere; of the background nothing is known.
+    /// Number of uses of each of `bricks` bricks; that of the background is not counted.
     pub fn brick_uses(&self, bricks: usize) -> Vec<u64> {
         let (IndexTable::Dense { ids, .. } | IndexTable::Sparse { ids, .. }) = &self.table;
         let mut node_uses = vec![0_u64; self.nodes.len()];
@@ -151,7 +151,7 @@ impl Index {
         uses
     }
 
-    /// Memory taken, in bytes.
+    /// Memory of the index, in bytes.
     pub fn memory_bytes(&self) -> usize {
         let table = match &self.table {
             IndexTable::Dense { ids, .. } => size_of_val(&**ids),
@@ -182,7 +182,8 @@ fn dense(bounds: &IndexBox, entries: &[(IVec3, u32)]) -> IndexTable {
     IndexTable::Dense { origin, size: edges.as_uvec3() << NODE_VOXEL_BITS, strides, ids }
 }
 
-/// Kept out of line so that look-ups in the usual table stay short.
+/// Looks up a node in the sorted list; kept out of line so that look-ups in the usual table stay
+/// short.
 #[inline(never)]
 fn find(positions: &[[i32; 3]], ids: &[u32], position: IVec3) -> u32 {
     positions.binary_search(&position.to_array()).map_or(0, |at| ids[at])

@@ -17,7 +17,7 @@ impl IndexBox {
         Self { min: voxel, max: voxel }
     }
 
-    /// The smallest box around both.
+    /// The smallest box around both boxes.
     pub fn union(a: Option<Self>, b: Option<Self>) -> Option<Self> {
         match (a, b) {
             (Some(a), Some(b)) => Some(Self { min: a.min.min(b.min), max: a.max.max(b.max) }),
@@ -40,7 +40,7 @@ impl IndexBox {
         Self { min: self.min.max(other.min), max: self.max.min(other.max) }
     }
 
-    /// How many voxels the box holds; saturates at `u64::MAX`.
+    /// Number of voxels in the box; saturates at `u64::MAX`.
     pub fn voxel_count(&self) -> u64 {
         let extent = |low: i32, high: i32| (i64::from(high) - i64::from(low) + 1).max(0) as u64;
         extent(self.min.x, self.max.x)

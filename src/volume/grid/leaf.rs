@@ -2,7 +2,7 @@
 
 use glam::IVec3;
 
-/// 8x8x8 voxels.
+/// A block of 8x8x8 voxels.
 #[derive(Clone)]
 pub struct Leaf<V> {
     /// The first voxel, a multiple of 8.

@@ -8,7 +8,8 @@ use super::index::NODE_BRICKS;
 use super::leaf::Leaf;
 use super::stats::GridSummary;
 
-/// Where a block of 8 voxels a side gets its values: a leaf or, with the top bit clear, a constant.
+/// Source of the values of a block of 8 voxels a side: a leaf or, with the top bit clear, a
+/// constant.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) struct BlockOrigin(u32);
 

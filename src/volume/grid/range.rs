@@ -1,4 +1,4 @@
-//! Conservative ranges of the interpolated function, from what is cached for bricks and nodes.
+//! Conservative ranges of the interpolated function, from the ranges cached for bricks and nodes.
 
 use glam::{IVec3, Vec3};
 
@@ -10,8 +10,8 @@ use super::voxel::Voxel;
 
 impl<V: Voxel> SparseGrid<V> {
     /// The smallest and largest value, by component, that [`sample`](Self::sample) can return in
-    /// the closed box from `min` to `max` in index space, or a little more: the ranges are those
-    /// of parts of 4x4x4 cells. The cost grows with what is stored in the box, never with empty
+    /// the closed box from `min` to `max` in index space, or a little more: the ranges are those of
+    /// parts of 4x4x4 cells. The cost grows with the data stored in the box, never with empty
     /// space. A box with a coordinate that is not a number gets the range of the whole grid.
     pub fn range(&self, min: Vec3, max: Vec3) -> (V, V) {
         if min.is_nan() || max.is_nan() {

@@ -8,7 +8,7 @@ use super::index_box::IndexBox;
 use super::stats::{GridStats, GridSummary};
 use super::voxel::Voxel;
 
-/// A sparse grid of `f32` or [`Vec3A`] values that takes memory for what it stores, not for the
+/// A sparse grid of `f32` or [`Vec3A`] values whose memory grows with the stored data, not with the
 /// box around it.
 ///
 /// Built by a [`GridBuilder`](super::GridBuilder) or [`SparseGrid::from_dense`] and not changed afterwards.

@@ -13,11 +13,11 @@ pub struct GridStats<V> {
     pub max: V,
     /// Mean of the active values, by component; zero when there is none.
     pub mean: V,
-    /// How many voxels are active.
+    /// Number of active voxels.
     pub active_voxels: u64,
     /// The inclusive box around the active voxels.
     pub active_bounds: Option<IndexBox>,
-    /// How many stored values were not finite (or too large to interpolate) and became the
+    /// Number of stored values that were not finite (or too large to interpolate) and became the
     /// background.
     pub replaced_values: u64,
     /// Memory that the grid takes, in bytes.

@@ -19,7 +19,7 @@ pub trait Voxel:
     /// The value of empty space when nothing else is known.
     const ZERO: Self;
 
-    /// How many components there are: 1 or 3.
+    /// Number of components: 1 or 3.
     const COMPONENTS: usize;
 
     /// Linear interpolation: `a` at `t` = 0, `b` at `t` = 1, and exactly `a` when both agree.

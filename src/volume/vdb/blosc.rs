@@ -146,7 +146,8 @@ fn decompress_stream(
     if complete { Ok(()) } else { Err(damaged()) }
 }
 
-/// From all first bytes, all second bytes, ... back to whole items; an incomplete one stays last.
+/// Undoes the byte shuffle: from all first bytes, all second bytes, ... back to whole items; an
+/// incomplete one stays last.
 fn unshuffle_bytes(source: &[u8], target: &mut [u8], item: usize) {
     let items = source.len() / item;
     let (source, source_rest) = source.split_at(items * item);
@@ -159,8 +160,8 @@ fn unshuffle_bytes(source: &[u8], target: &mut [u8], item: usize) {
     target_rest.copy_from_slice(source_rest);
 }
 
-/// From all lowest bits, all second bits, ... back to whole items. Blocks whose items are no
-/// multiple of 8 were never shuffled.
+/// Undoes the bit shuffle: from all lowest bits, all second bits, ... back to whole items. Blocks
+/// whose items are no multiple of 8 were never shuffled.
 fn unshuffle_bits(source: &[u8], target: &mut [u8], item: usize) {
     let items = source.len() / item;
     if items == 0 || !items.is_multiple_of(8) {
@@ -182,7 +183,7 @@ fn unshuffle_bits(source: &[u8], target: &mut [u8], item: usize) {
 mod tests {
     use super::*;
 
-    /// How to pack a test blob.
+    /// Options for packing a test blob.
     struct Pack {
         flags: u8,
         item: usize,

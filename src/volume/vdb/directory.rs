@@ -1,4 +1,4 @@
-//! The list of a file's grids, known without reading their voxels.
+//! List of a file's grids, read without their voxels.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -39,10 +39,10 @@ impl Directory {
         Self::parse(&path.display().to_string(), bytes, progress)
     }
 
-    /// The same from memory; `file` names it in messages.
+    /// Reads the list of grids from bytes in memory; `file` names them in messages.
     ///
     /// # Errors
-    /// As [`Directory::open`], except for [`Error::Io`].
+    /// Same errors as [`Directory::open`], except for [`Error::Io`].
     pub fn parse(
         file: &str,
         bytes: impl Into<Cow<'static, [u8]>>,
@@ -65,7 +65,8 @@ impl Directory {
         Ok(Self { file: file.into(), version: header.version, metadata, grids, bytes })
     }
 
-    /// Loads the voxels of the grid at `index` of the list, or says why they cannot be.
+    /// Loads the voxels of the grid at `index` of the list, or the reason why they cannot be
+    /// loaded.
     ///
     /// # Errors
     /// [`Error::Invalid`] if the grid is damaged or there is none at `index`,
@@ -84,7 +85,7 @@ impl Directory {
     /// Loads every grid; those that share a tree share its voxels.
     ///
     /// # Errors
-    /// As [`Directory::load`].
+    /// Same errors as [`Directory::load`].
     pub fn load_all(self, progress: Progress) -> Result<VdbFile> {
         let count = self.grids.len() as f32;
         let mut values: Vec<VdbValues> = Vec::new();

@@ -12,10 +12,10 @@ use super::tree;
 use super::values::{Scalar, ValueLayout};
 use crate::error::Progress;
 
-/// What a grid is meant to be.
+/// Class of a grid: the quantity that its values stand for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum GridClass {
-    /// Not said.
+    /// No class given.
     Unknown,
     /// Signed distances to a surface near it, and constants elsewhere; not a density.
     LevelSet,
@@ -54,29 +54,30 @@ pub struct GridInfo {
     pub name: String,
     /// The type as the file has it, such as `Tree_float_5_4_3`.
     pub type_name: String,
-    /// What the grid is meant to be.
+    /// Class of the grid.
     pub class: GridClass,
     /// Whether the values are stored as half floats.
     pub is_half: bool,
-    /// From index space to the world; [`Transform::IDENTITY`] if it is why the grid is unsupported.
+    /// Transform from index space to the world; [`Transform::IDENTITY`] if it is why the grid is
+    /// unsupported.
     pub transform: Transform,
     /// The grid's own named values.
     pub metadata: Metadata,
-    /// Why the grid cannot be loaded, if it cannot.
+    /// Reason why the grid cannot be loaded, if it cannot.
     pub unsupported: Option<String>,
     /// The name that no other grid of the file has.
     pub(super) unique_name: String,
     pub(super) tree: TreePlace,
 }
 
-/// Where the tree of a grid is.
+/// Location of a grid's tree.
 #[derive(Clone, Debug)]
 pub(super) enum TreePlace {
-    /// Here.
+    /// Bytes of the grid's own tree.
     Own { bytes: Range<usize>, layout: ValueLayout },
-    /// It is that of the grid with this unique name.
+    /// The tree is that of the grid with this unique name.
     Shared(String),
-    /// Somewhere, of a kind that is not loaded.
+    /// A tree of a kind that is not loaded.
     Foreign,
 }
 
@@ -200,7 +201,8 @@ fn split_type(type_name: &str) -> Option<(&str, &str)> {
     type_name.strip_prefix("Tree_")?.split_once('_')
 }
 
-/// How a tree's values are stored, if it is a usual tree of values of known size.
+/// Storage of a tree's values: type and number of components; `None` unless it is a usual tree of
+/// values of known size.
 fn stored_values(type_name: &str) -> Option<(Scalar, usize)> {
     let (values, LEVELS) = split_type(type_name)? else { return None };
     Some(match values {
@@ -215,7 +217,7 @@ fn stored_values(type_name: &str) -> Option<(Scalar, usize)> {
     })
 }
 
-/// Why trees of this type are not loaded, if they are not.
+/// Reason why trees of this type are not loaded, if they are not.
 fn unsupported_type(type_name: &str) -> Option<String> {
     match (split_type(type_name), stored_values(type_name)) {
         (_, Some((Scalar::F32 | Scalar::F64, _))) => None,

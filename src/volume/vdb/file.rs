@@ -35,6 +35,6 @@ pub enum VdbValues {
     Float(Arc<SparseGrid<f32>>),
     /// The voxels of a vec3s or vec3d grid.
     Vec3(Arc<SparseGrid<Vec3A>>),
-    /// Not loaded, for this reason.
+    /// Voxels that are not loaded, for this reason.
     Unsupported(String),
 }

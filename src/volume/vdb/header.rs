@@ -1,4 +1,4 @@
-//! The first bytes of a file: that it is one, and how it is laid out.
+//! Header of a file: its magic number, and the layout of the rest.
 
 use super::compression::Compression;
 use super::stream::{Fault, Result, Stream};
@@ -10,13 +10,13 @@ const NODE_MASK_COMPRESSION: u32 = 222;
 const MAGIC: [u8; 8] = *b" BDV\0\0\0\0";
 const UUID_LENGTH: usize = 36;
 
-/// What the whole file has in common.
+/// Properties that all grids of a file share.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct VdbHeader {
     pub version: u32,
-    /// Whether each grid says where it ends.
+    /// Whether each grid stores where it ends.
     pub has_offsets: bool,
-    /// For versions whose grids do not say.
+    /// Compression, for versions whose grids do not store their own.
     pub compression: Compression,
 }
 

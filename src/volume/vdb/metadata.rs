@@ -25,7 +25,7 @@ pub enum MetaValue {
     Other {
         /// The name of the type.
         type_name: String,
-        /// Its size.
+        /// Size of the value in bytes.
         bytes: usize,
     },
 }
@@ -72,7 +72,7 @@ fn decode(type_name: String, bytes: &[u8]) -> MetaValue {
     value.unwrap_or(MetaValue::Other { type_name, bytes: bytes.len() })
 }
 
-/// `vec2i` to `vec4d`, `mat3s` to `mat4d`.
+/// Components of a vector or matrix type, `vec2i` to `vec4d` and `mat3s` to `mat4d`.
 fn vector(name: &str, bytes: &[u8]) -> Option<Vec<f64>> {
     let (shape, component) = name.split_at_checked(4)?;
     let count = match shape {
@@ -91,7 +91,7 @@ fn vector(name: &str, bytes: &[u8]) -> Option<Vec<f64>> {
     }
 }
 
-/// Exactly `count` numbers, or none if the size is another.
+/// Decodes exactly `count` numbers of `N` bytes each; `None` if the size is another.
 fn numbers<const N: usize, T>(
     bytes: &[u8],
     count: usize,

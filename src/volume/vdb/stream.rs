@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 
-/// Why a part of a file could not be read; [`Fault::into_error`] adds file and grid.
+/// Reason why a part of a file could not be read; [`Fault::into_error`] adds file and grid.
 #[derive(Debug)]
 pub(super) enum Fault {
     /// The bytes at `offset` break the format.
@@ -32,7 +32,7 @@ impl Fault {
 }
 
 impl From<Error> for Fault {
-    /// Of errors that know neither file nor grid, as those of the grid builder.
+    /// Converts errors that name neither file nor grid, such as those of the grid builder.
     fn from(error: Error) -> Self {
         match error {
             Error::Cancelled => Self::Cancelled,
@@ -55,7 +55,7 @@ impl<'a> Stream<'a> {
         Self { bytes, position: position.min(bytes.len()), section }
     }
 
-    /// Names what is read from here on.
+    /// Names the section that is read from here on.
     pub fn enter(&mut self, section: &'static str) {
         self.section = section;
     }

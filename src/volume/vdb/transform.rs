@@ -64,7 +64,7 @@ pub(super) fn read(stream: &mut Stream) -> Result<Transform> {
     Transform::new(affine)
 }
 
-/// Vectors that follow each other; scale maps keep values derived from the scale behind it.
+/// Reads adjacent vectors; scale maps keep values derived from the scale behind it.
 fn vectors<const N: usize>(stream: &mut Stream) -> Result<[DVec3; N]> {
     let mut vectors = [DVec3::ZERO; N];
     for vector in &mut vectors {
@@ -73,7 +73,7 @@ fn vectors<const N: usize>(stream: &mut Stream) -> Result<[DVec3; N]> {
     Ok(vectors)
 }
 
-/// Stored row by row for row vectors, which is column by column for column vectors.
+/// Reads a matrix, stored row by row for row vectors, which is column by column for column vectors.
 fn matrix(stream: &mut Stream) -> Result<DAffine3> {
     let mut columns = [0.0; 16];
     for value in &mut columns {

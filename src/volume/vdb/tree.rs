@@ -24,11 +24,11 @@ struct TreeLevel {
 
 /// The children of the root, 4096 voxels a side.
 const UPPER: TreeLevel = TreeLevel { places: 5, voxels: 7 };
-/// Their children, 128 voxels a side.
+/// The children of the upper nodes, 128 voxels a side.
 const LOWER: TreeLevel = TreeLevel { places: 4, voxels: 3 };
 const ROOT_BITS: u32 = 12;
 const LEAF_VOXELS: usize = 512;
-/// Nodes scanned, or leaves decoded by one thread, between two looks at whether to stop.
+/// Nodes scanned, or leaves decoded by one thread, between two checks whether to stop.
 const SCAN_STEP: usize = 1024;
 const DECODE_STEP: usize = 128;
 

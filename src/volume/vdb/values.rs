@@ -1,7 +1,7 @@
 //! The value buffer of a node: found without unpacking, then decoded into voxels.
 //!
-//! With mask compression only active values are stored; a code tells which one or two values the
-//! inactive ones have.
+//! With mask compression only active values are stored; a code selects the one or two values that
+//! inactive voxels have.
 
 use half::f16;
 
@@ -9,7 +9,7 @@ use super::compression::{Buffer, Codec, Compression};
 use super::stream::{Result, Stream};
 use crate::volume::grid::Voxel;
 
-/// How a component is stored.
+/// Storage type of a component.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Scalar {
     F32,
@@ -20,7 +20,7 @@ pub(super) enum Scalar {
     },
 }
 
-/// How the values of a tree are stored.
+/// Layout of the values of a tree.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ValueLayout {
     pub scalar: Scalar,
@@ -115,17 +115,17 @@ impl<'a> Mask<'a> {
     }
 }
 
-/// What the inactive values are.
+/// Values of inactive voxels.
 #[derive(Clone, Copy)]
 enum Inactive<'a> {
     Background,
     MinusBackground,
     One(&'a [u8]),
-    /// By a mask: minus the background where off, the background where on.
+    /// Selected by a mask: minus the background where off, the background where on.
     Signs(Mask<'a>),
-    /// By a mask: this one where off, the background where on.
+    /// Selected by a mask: this one where off, the background where on.
     OneOrBackground(&'a [u8], Mask<'a>),
-    /// By a mask: the first where off, the second where on.
+    /// Selected by a mask: the first where off, the second where on.
     Two(&'a [u8], &'a [u8], Mask<'a>),
     /// All values are stored.
     Stored,
@@ -153,16 +153,16 @@ impl<'a> Inactive<'a> {
     }
 }
 
-/// Where the values of a node are and how to decode them.
+/// Stored values of a node and their encoding.
 #[derive(Clone, Copy)]
 pub(super) struct PackedValues<'a> {
     inactive: Inactive<'a>,
     buffer: Buffer<'a>,
-    /// How many values are stored.
+    /// Number of stored values.
     stored: usize,
-    /// Whether they are those of the active places only.
+    /// Whether only the values of active voxels are stored.
     masked: bool,
-    /// Where the buffer ends, for messages.
+    /// Offset of the buffer's end, for messages.
     end: usize,
 }
 

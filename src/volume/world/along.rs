@@ -19,11 +19,12 @@ pub(super) struct VolumeEntry {
     instance: u32,
 }
 
-/// As many as meet most rays, so that they need no memory of their own.
+/// The volumes that a ray enters, with room for those of most rays without an allocation.
 pub(super) type Entries = SmallVec<[VolumeEntry; 8]>;
 
 impl VolumeEntry {
-    /// Where `ray` is inside of a volume with anything in it.
+    /// The interval in which `ray` is inside of a volume; `None` if it misses the volume or that is
+    /// empty.
     pub(super) fn new(instance: &Instance, index: u32, ray: &Ray, t_max: f32) -> Option<Self> {
         if let CoefficientBounds::Uniform(_, majorant) = instance.volume.bounds()
             && majorant.is_zero()
@@ -43,12 +44,12 @@ pub struct MediumRay<'w> {
     ray: Ray,
     /// Volumes not reached yet, nearest last.
     ahead: Entries,
-    /// Volumes the ray is in: those with matter in the present segment, and those whose next
-    /// matter comes later.
+    /// Volumes the ray is in: those that are not empty in the present segment, and those that are
+    /// again further on.
     inside: SmallVec<[Cursor<'w>; 3]>,
-    /// Where the segment handed out last begins.
+    /// Ray parameter at which the last segment begins.
     from: f32,
-    /// Where it ends, and the next may begin.
+    /// Ray parameter at which the last segment ends, and the next may begin.
     t: f32,
 }
 
@@ -60,20 +61,20 @@ impl<'w> MediumRay<'w> {
         Self { instances, ray, ahead, inside: SmallVec::new(), from: 0.0, t: 0.0 }
     }
 
-    /// Where the first volume begins and the last one ends, before the walk has begun; `None` where
-    /// there is none. Either may be infinite in a medium without borders.
+    /// Ray parameters at which the first volume begins and the last one ends, before the walk has
+    /// begun; `None` where there is none. Either may be infinite in a medium without borders.
     pub fn extent(&self) -> Option<(f32, f32)> {
         let first = self.ahead.last()?.t0;
         Some((first, self.ahead.iter().fold(first, |end, entry| end.max(entry.t1))))
     }
 
-    /// The next stretch of the ray with something in it.
+    /// The next segment of the ray that is not empty.
     #[inline]
     pub fn next_segment(&mut self) -> Option<Segment> {
         if self.ahead.is_empty()
             && let [only] = self.inside.as_mut_slice()
         {
-            // Nothing to merge: the volume's own stretches are the segments.
+            // Nothing to merge: the volume's own segments are those of the ray.
             if !only.advance() {
                 self.inside.clear();
                 return None;
@@ -127,7 +128,7 @@ impl<'w> MediumRay<'w> {
             segment.t1 = segment.t1.min(own.t1);
             segment.majorant += own.majorant;
             segment.emission_rate += own.emission_rate;
-            // The finest voxel decides how often the emission is worth looking at.
+            // The finest voxel decides how often the emission is worth reading.
             segment.voxel_rate = segment.voxel_rate.max(own.voxel_rate);
             segment.uniform &= own.uniform;
             segment.gray &= own.gray;
@@ -135,7 +136,7 @@ impl<'w> MediumRay<'w> {
         segment
     }
 
-    /// The volumes with matter in the segment handed out last.
+    /// The volumes that are not empty in the last segment.
     fn present(&self) -> impl Iterator<Item = &Cursor<'w>> {
         self.inside.iter().filter(|cursor| cursor.is_at(self.from))
     }
@@ -174,8 +175,8 @@ impl<'w> MediumRay<'w> {
     }
 
     /// The albedo μ_s / μ_t and the phase function at parameter `t` of the segment handed out last.
-    /// Where one volume is alone its density is not read, and only what they are relative to each
-    /// other is known.
+    /// Where one volume is alone its density is not read: the phase function's weights are then
+    /// relative, which is all that it needs.
     pub fn scattering(&self, t: f32) -> (Rgb, PhaseMix) {
         let mut mix = PhaseMix::default();
         if let [cursor] = self.inside.as_slice() {
@@ -219,49 +220,49 @@ impl<'w> MediumRay<'w> {
     }
 }
 
-/// Per channel; nothing where there is nothing.
+/// Ratio per channel; 0 where the whole is 0.
 fn ratio(part: Rgb, whole: Rgb) -> Rgb {
     Rgb::select(whole.cmpgt(Rgb::ZERO), part / whole, Rgb::ZERO)
 }
 
-/// One volume's way along the ray: the stretch it is in or comes to next.
+/// One volume's segments along the ray: the one it is in or reaches next.
 #[derive(Clone, Copy, Debug)]
 struct Cursor<'w> {
     instance: &'w Instance,
-    /// The ray in the volume's space; its parameter is still the world's.
+    /// The ray in the volume's space, with the world's ray parameter.
     local: Ray,
     t0: f32,
     t1: f32,
     majorant: Majorant,
-    way: Crossing,
+    crossing: Crossing,
 }
 
-/// The way in which a ray crosses a volume.
+/// Kind of a ray's crossing of a volume.
 #[derive(Clone, Copy, Debug)]
 enum Crossing {
-    /// At once, up to the end of a uniform volume.
+    /// One segment, up to the end of a uniform volume.
     Uniform { end: f32 },
     /// Cell by cell.
     Cells(CellWalk),
 }
 
 impl<'w> Cursor<'w> {
-    /// Before the first stretch of a volume entered at `t0` and left at `t1`.
+    /// Starts before the first segment of a volume entered at `t0` and left at `t1`.
     fn enter(instance: &'w Instance, ray: &Ray, t0: f32, t1: f32) -> Self {
         let local = instance.local_ray(ray);
-        let (majorant, way) = match instance.volume.bounds() {
+        let (majorant, crossing) = match instance.volume.bounds() {
             CoefficientBounds::Uniform(_, majorant) => (*majorant, Crossing::Uniform { end: t1 }),
             CoefficientBounds::Cells(grid) => {
                 (Majorant::default(), Crossing::Cells(grid.walk(&local, t0, t1)))
             }
         };
-        Self { instance, local, t0, t1: t0, majorant, way }
+        Self { instance, local, t0, t1: t0, majorant, crossing }
     }
 
-    /// Goes to the next occupied stretch; false at the end.
+    /// Goes to the next occupied segment; false at the end.
     #[inline]
     fn advance(&mut self) -> bool {
-        match (&mut self.way, self.instance.volume.bounds()) {
+        match (&mut self.crossing, self.instance.volume.bounds()) {
             (Crossing::Cells(walk), CoefficientBounds::Cells(grid)) => {
                 match grid.next_occupied(walk) {
                     Some((t0, t1, majorant)) => {
@@ -279,7 +280,7 @@ impl<'w> Cursor<'w> {
         }
     }
 
-    /// Goes on until its stretch ends behind `t`; false if none does.
+    /// Goes on until the segment ends behind `t`; false if none does.
     fn reaches_beyond(&mut self, t: f32) -> bool {
         while self.t1 <= t {
             if !self.advance() {
@@ -289,7 +290,7 @@ impl<'w> Cursor<'w> {
         true
     }
 
-    /// Whether its stretch has begun at `t`.
+    /// Whether the segment has begun at `t`.
     #[inline]
     fn is_at(&self, t: f32) -> bool {
         self.t0 <= t
@@ -302,13 +303,13 @@ impl<'w> Cursor<'w> {
             majorant: self.majorant.mu_t,
             emission_rate: self.majorant.emission * self.instance.emission_rate,
             voxel_rate: self.instance.voxel_rate,
-            uniform: matches!(self.way, Crossing::Uniform { .. }),
+            uniform: matches!(self.crossing, Crossing::Uniform { .. }),
             gray: self.instance.volume.properties().is_gray(),
         }
     }
 
     fn bounds_of_mu_t(&self) -> (Rgb, Rgb) {
-        match (&self.way, self.instance.volume.bounds()) {
+        match (&self.crossing, self.instance.volume.bounds()) {
             (Crossing::Cells(walk), CoefficientBounds::Cells(grid)) => {
                 let tint = self.instance.volume.properties().tint();
                 (tint * grid.minorant(walk), tint * self.majorant.mu_t)

@@ -8,7 +8,7 @@ use crate::math::{Aabb, Bvh, Ray};
 pub(super) struct Emissive {
     indices: Vec<u32>,
     hierarchy: Bvh,
-    /// Whether anything emits that is no light.
+    /// Whether any instance emits that cannot be sampled as a light.
     unsampled: bool,
 }
 
@@ -23,12 +23,12 @@ impl Emissive {
         Self { indices, hierarchy: Bvh::new(&boxes), unsampled }
     }
 
-    /// Whether anything emits, sampled or not.
+    /// Whether any instance emits, sampled as a light or not.
     pub(super) fn any(&self) -> bool {
         self.unsampled || !self.indices.is_empty()
     }
 
-    /// Whether anything emits that is no light.
+    /// Whether any instance emits that cannot be sampled as a light.
     pub(super) fn has_unsampled(&self) -> bool {
         self.unsampled
     }

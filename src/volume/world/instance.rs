@@ -20,7 +20,7 @@ pub struct Instance {
     pub(super) bounds: Aabb,
     /// World volume of a unit of the volume's own.
     world_volume: f64,
-    /// Turns a bound of lum ε into collisions per length along the brightest chord.
+    /// Factor from a bound of lum ε to collisions per length along the brightest chord.
     pub(super) emission_rate: f32,
     pub(super) voxel_rate: f32,
 }
@@ -56,7 +56,7 @@ impl Instance {
         &self.volume
     }
 
-    /// From the volume's space to the world.
+    /// Transform from the volume's space to the world.
     pub fn world_from_local(&self) -> &Affine3A {
         &self.world_from_local
     }
@@ -74,17 +74,18 @@ impl Instance {
         )
     }
 
-    /// A box around it in the world; infinite for a volume without borders.
+    /// World box around the volume; infinite for a volume without borders.
     pub fn bounds(&self) -> &Aabb {
         &self.bounds
     }
 
-    /// The distribution of its emitted power, in the volume's own space; `None` where it is no light.
+    /// Distribution of the emitted power, in the volume's own space; `None` where the volume is no
+    /// light.
     pub fn energy(&self) -> Option<&Energy> {
         self.volume.energy()
     }
 
-    /// Whether it can be sampled as a light.
+    /// Whether the volume can be sampled as a light.
     pub fn emits(&self) -> bool {
         self.energy().is_some()
     }

@@ -1,4 +1,4 @@
-//! The mean over all jitters is ∫ T ε dt, and T at the end: no jitter knows of another.
+//! The mean over all jitters is ∫ T ε dt, and T at the end: the jitters are independent.
 
 use std::sync::Arc;
 
@@ -13,14 +13,14 @@ use crate::volume::procedural::Noise;
 use crate::volume::world::{Instance, World};
 use crate::volume::{MediumProperties, Volume};
 
-/// Largest |z|: of the 108 comparisons here one fails by chance once in 16 000 sets of jitters.
+/// Largest |z|: of the 108 comparisons here one fails at random once in 16 000 sets of jitters.
 const Z_LIMIT: f64 = 5.0;
-/// Walks of which a mean is taken.
+/// Walks that each mean is taken over.
 const WALKS: u32 = 40_000;
-const ERRANDS: [RayKind; 3] = [RayKind::Camera, RayKind::Scattered, RayKind::Light];
-/// Looks along the brightest chord: as few as the majorants allow, so that looks and combs have
-/// the same pace where they read as often, and a few more.
-const LOOKS: [f32; 2] = [0.0, 64.0];
+const RAY_KINDS: [RayKind; 3] = [RayKind::Camera, RayKind::Scattered, RayKind::Light];
+/// Reads of the emission along the brightest chord: as few as the majorants allow, so that reads of
+/// ε and combs of μ_t have the same pace where they are equally many, and a few more.
+const READS: [f32; 2] = [0.0, 64.0];
 
 fn noise(seed: u32) -> ScalarField {
     ScalarField::Noise(Noise { frequency: 3.0, octaves: 3, contrast: 4.0, seed })
@@ -54,13 +54,13 @@ fn expected(instance: &Instance, ray: &Ray) -> [DVec3; 2] {
     [gathered, transmittance]
 }
 
-/// One walk with the numbers of a path of its own, spread evenly as in a render.
-fn walk(world: &World, ray: Ray, looks: f32, ray_kind: RayKind, index: u32) -> [DVec3; 2] {
+/// One walk with random numbers of its own, spread evenly as in a render.
+fn walk(world: &World, ray: Ray, reads: f32, ray_kind: RayKind, index: u32) -> [DVec3; 2] {
     let mut rng = PathRng::stratified(u64::from(index), UVec2::ZERO, 0);
     if ray_kind != RayKind::Camera {
         rng.enter_vertex(1);
     }
-    let gathered = gather(world.along(ray, f32::INFINITY), looks, ray_kind, &mut rng);
+    let gathered = gather(world.along(ray, f32::INFINITY), reads, ray_kind, &mut rng);
     [gathered.emission.as_dvec3(), gathered.transmittance.as_dvec3()]
 }
 
@@ -69,10 +69,10 @@ fn check(density_scale: Rgb, emission: Emission) {
     let ray = Ray::new(Vec3A::new(-1.6, 0.11, -0.23), Vec3A::new(1.0, 0.06, 0.04).normalize());
     let expected = expected(&instance, &ray);
     let world = World::new(vec![instance]);
-    for (ray_kind, looks) in ERRANDS.into_iter().flat_map(|e| LOOKS.map(|looks| (e, looks))) {
+    for (ray_kind, reads) in RAY_KINDS.into_iter().flat_map(|e| READS.map(|reads| (e, reads))) {
         let (mut sums, mut squares) = ([DVec3::ZERO; 2], [DVec3::ZERO; 2]);
         for index in 0..WALKS {
-            for (i, value) in walk(&world, ray, looks, ray_kind, index).into_iter().enumerate() {
+            for (i, value) in walk(&world, ray, reads, ray_kind, index).into_iter().enumerate() {
                 sums[i] += value;
                 squares[i] += value * value;
             }
@@ -87,7 +87,7 @@ fn check(density_scale: Rgb, emission: Emission) {
                 let error = variance[channel].sqrt().hypot(2e-4 * expected);
                 let z = (mean - expected) / error;
                 let label = format!(
-                    "{what} of {density_scale}, {ray_kind:?}, {looks} looks, channel {channel}: \
+                    "{what} of {density_scale}, {ray_kind:?}, {reads} reads, channel {channel}: \
                      {mean:.6} ± {error:.6}, expected {expected:.6}, z {z:.2}"
                 );
                 println!("{label}");
@@ -98,20 +98,20 @@ fn check(density_scale: Rgb, emission: Emission) {
     }
 }
 
-/// What glows hides the glow behind it.
+/// Emission where the extinction is.
 #[test]
-fn glow_where_the_smoke_is() {
+fn emission_where_the_smoke_is() {
     check(Rgb::new(0.5, 2.0, 6.0), Emission::Source { le: Rgb::new(1.0, 2.0, 0.5) });
 }
 
-/// What glows and what hides it have their details elsewhere.
+/// Emission and extinction with details in different places.
 #[test]
-fn glow_apart_from_the_smoke() {
+fn emission_apart_from_the_smoke() {
     let field = RgbField::Tinted(noise(9), Rgb::new(2.0, 1.0, 0.5));
     check(Rgb::new(2.0, 0.5, 4.0), Emission::Field { field, scale: Rgb::ONE });
 }
 
-/// Combs under majorants that are too far above.
+/// Combs under majorants far above the extinction.
 #[test]
 fn hardly_any_smoke() {
     let field = RgbField::Tinted(noise(9), Rgb::new(2.0, 1.0, 0.5));
