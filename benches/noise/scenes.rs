@@ -13,9 +13,9 @@ use super::which::Table;
 /// A scene of the tables.
 #[derive(Clone, Copy)]
 pub struct BenchScene {
-    /// Its name in the tables and for filters.
+    /// Name of the scene in the tables and for filters.
     pub name: &'static str,
-    /// Its purpose.
+    /// Purpose of the scene.
     pub shows: &'static str,
     /// The tables it is in.
     pub tables: &'static [Table],
@@ -29,7 +29,7 @@ pub struct BenchScene {
     set: &'static [&'static str],
 }
 
-/// Where a scene's volumes are looked for.
+/// Folder of a scene's volumes.
 #[derive(Clone, Copy, PartialEq)]
 enum Folder {
     /// The folder of the scene file.
@@ -40,7 +40,7 @@ enum Folder {
 
 const SCENES: &str = "benches/noise/scenes";
 
-/// Every scene.
+/// All scenes of the benchmark.
 #[allow(clippy::too_many_lines, reason = "a table with one row for each scene")]
 pub fn all() -> Vec<BenchScene> {
     let own = |name, shows, file| BenchScene {

@@ -10,7 +10,7 @@ use super::{
     scenes::BenchScene,
 };
 
-/// What the figures of all tables mean.
+/// Prints the meaning of the figures of all tables.
 pub fn preamble(plan: &Plan) {
     let Plan { spp, error, budget, film } = plan;
     let how = if *film { "with film and schedule" } else { "by a bare loop over the pixels" };
@@ -79,7 +79,7 @@ fn cells(row: &Row, noise: &Noise, [variance, efficiency]: [f64; 2]) -> [String;
     ]
 }
 
-/// The first cell to the left, figures to the right.
+/// Prints one line of cells: the first aligned to the left, figures to the right.
 fn print_cells(cells: &[String; COLUMNS.len()]) {
     for (column, (cell, (_, width))) in std::iter::zip(cells, COLUMNS).enumerate() {
         match column {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::folder::folder_of;
 use super::target::Target;
 
-/// What tells a file, there or not yet, from any other.
+/// Identity of a file, existing or not yet, that tells it from any other.
 #[derive(Clone, Debug)]
 pub(crate) struct Identity {
     /// The path without `.`, `..` and symbolic links, as far as it is there.

@@ -8,15 +8,15 @@ use super::drawing::{Align, Canvas, color};
 use super::log_axis::LogAxis;
 use crate::error::Result;
 
-/// A named number with what is known of it.
+/// A named number of a bar chart with its label.
 pub struct Bar<'a> {
-    /// What it is called.
+    /// Name of the bar, left of it.
     pub name: &'a str,
     /// The number, above 0, and the ends of the interval that holds it; none where it is not known.
     pub value: Option<(f64, [f64; 2])>,
-    /// What is written at its end.
+    /// Text at the end of the bar.
     pub label: &'a str,
-    /// Whether it stands out.
+    /// Whether the bar is drawn in the color that stands out.
     pub stands_out: bool,
 }
 
@@ -24,18 +24,18 @@ pub struct Bar<'a> {
 pub struct Bars<'a> {
     /// A sentence above them.
     pub title: &'a str,
-    /// What the numbers are.
+    /// Quantity of the axis, with its unit.
     pub axis: &'a str,
-    /// From top to bottom.
+    /// Bars from top to bottom.
     pub bars: &'a [Bar<'a>],
 }
 
 const WIDTH: u32 = 1000;
 /// Borders of the bars: left, right.
 const FIELD: [i32; 2] = [310, 844];
-/// Where labels end.
+/// Column where labels end, in pixels.
 const LABELS: i32 = 984;
-/// Where the first bar begins.
+/// Row where the first bar begins, in pixels.
 const TOP: i32 = 76;
 /// Height of a bar with the gap below it, and of the bar.
 const ROW: [i32; 2] = [30, 16];

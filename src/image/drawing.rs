@@ -22,14 +22,14 @@ const LETTERS: f64 = 16.0;
 /// Place of a pixel, from the upper left corner.
 pub(super) type PixelPosition = (i32, i32);
 
-/// Where a text stands with respect to its place, across.
+/// Horizontal alignment of a text to its position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Align {
-    /// It begins there.
+    /// The text begins at its position.
     Left,
-    /// Its middle is there.
+    /// The text is centered on its position.
     Center,
-    /// It ends there.
+    /// The text ends at its position.
     Right,
 }
 
@@ -79,7 +79,7 @@ impl Canvas {
         }
     }
 
-    /// Fills the rectangle between two corners, both of them in it.
+    /// Fills the box of pixels between two corners, both of them included.
     pub fn fill(&mut self, [first, last]: [PixelPosition; 2], color: [u8; 3]) -> Result<()> {
         // `plotters` leaves the last row and column out.
         let end = (last.0 + 1, last.1 + 1);

@@ -1,5 +1,4 @@
-//! What a snapshot says about itself: the attributes of its file, in one list for writing and
-//! reading.
+//! Header of a snapshot: the attributes of its EXR file, in one list for writing and reading.
 //!
 //! Names are plain where scenes' documentation promises them to other programs, and begin with
 //! `flambeau.` where they only serve to go on. The version stands in `software` as
@@ -16,7 +15,7 @@ use crate::files::Fingerprint;
 use crate::render::estimate::samples_per_pixel;
 use crate::render::film::{Film, Totals};
 
-/// What a snapshot says about itself.
+/// Header of a snapshot: how its picture was rendered.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SnapshotHeader {
     /// The whole setting as a scene file, with absolute file names.
@@ -106,7 +105,7 @@ pub struct Attributes<'a> {
 }
 
 impl<'a> Attributes<'a> {
-    /// Those of the file at `path`.
+    /// Attributes of the file at `path`.
     pub fn new(path: &'a Path, all: &'a LayerAttributes) -> Self {
         Self { path, all }
     }
@@ -116,7 +115,7 @@ impl<'a> Attributes<'a> {
         self.get(SCENE).is_some() && self.get(PATHS).is_some()
     }
 
-    /// What the file says about itself.
+    /// Reads the header of the snapshot from the attributes.
     pub fn header(&self) -> Result<SnapshotHeader> {
         let cpu_seconds_setup = self.number(CPU_SECONDS_SETUP)?;
         Ok(SnapshotHeader {

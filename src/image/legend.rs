@@ -1,4 +1,4 @@
-//! What the colors of a map mean, drawn below it.
+//! Legend of a map, drawn below it: the ramp with its numbers.
 
 use super::drawing::{Align, Canvas, color};
 use crate::error::Result;
@@ -13,9 +13,9 @@ const BAR: i32 = 14;
 
 /// A bar of colors with its numbers.
 pub struct Legend<'a> {
-    /// What the numbers are.
+    /// Quantity of the map, with its unit.
     pub title: &'a str,
-    /// What else is to be said about them.
+    /// Further remark on the numbers.
     pub note: &'a str,
     /// The 8-bit sRGB color at a place in 0..=1 of the bar.
     pub color: &'a dyn Fn(f32) -> [u8; 3],

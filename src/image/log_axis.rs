@@ -2,14 +2,14 @@
 
 /// The least that an axis spans, as a factor.
 const LEAST_SPAN: f64 = 3.0;
-/// What is left free around the values, as a factor.
+/// Margin on both sides of the values, as a factor.
 const MARGIN: f64 = 1.15;
 
 /// A logarithmic axis.
 pub(super) struct LogAxis {
     low: f64,
     high: f64,
-    /// Where its ends are.
+    /// Pixels of the two ends.
     pixels: [i32; 2],
 }
 

@@ -9,7 +9,7 @@ use super::legend::{self, Legend};
 use super::ramp::{self, Scale};
 use crate::error::Result;
 
-/// How numbers become colors.
+/// Color map of the numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Colors {
     /// Positive numbers on a logarithmic scale; zero and less are black.
@@ -20,17 +20,17 @@ pub enum Colors {
 
 /// A map to draw.
 pub struct Map<'a> {
-    /// What the numbers are.
+    /// Quantity of the map, with its unit.
     pub title: &'a str,
-    /// What else is to be said about them.
+    /// Further remark on the numbers.
     pub note: &'a str,
     /// Width and height in pixels.
     pub size: UVec2,
     /// The numbers, row 0 on top.
     pub values: &'a [f32],
-    /// Their colors.
+    /// Color map of the numbers.
     pub colors: Colors,
-    /// How a number is written in the legend.
+    /// Formats a number for the legend.
     pub label: fn(f64) -> String,
 }
 

@@ -23,7 +23,7 @@ fn ramps(size: UVec2) -> (Codes, Codes) {
 
 fn errors(reference: &Codes, picture: &Codes, size: UVec2, pixels_per_degree: f32) -> ErrorMap {
     let eye = Eye::new(pixels_per_degree).unwrap();
-    let [reference, picture] = [reference, picture].map(|codes| eye.look(codes, size));
+    let [reference, picture] = [reference, picture].map(|codes| eye.filter(codes, size));
     ErrorMap::new(size, difference(&reference, &picture))
 }
 
