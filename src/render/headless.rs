@@ -12,14 +12,14 @@ use super::schedule::Limits;
 use crate::error::{Error, Result};
 use crate::transport::PixelSampler;
 
-/// What to render and for how long.
+/// A render without a window: its sampler and its limits.
 pub struct RenderJob {
-    /// What to sample.
+    /// Sampler of the pixels.
     pub sampler: Arc<dyn PixelSampler>,
     /// Width and height in pixels.
     pub size: UVec2,
-    /// When to stop; whatever the time, not before every pixel has a sample. With neither limit
-    /// only the interrupt ends the render.
+    /// Limits of samples and time; whatever the time, the render does not stop before every pixel
+    /// has a sample. With neither limit only the interrupt ends it.
     pub limits: Limits,
     /// A film to go on from.
     pub resume: Option<Film>,
@@ -27,7 +27,7 @@ pub struct RenderJob {
     pub threads: Option<usize>,
 }
 
-/// What a render came to.
+/// Result of a render without a window.
 pub struct Headless {
     /// The film, consistent however the render ended.
     pub film: Film,

@@ -7,7 +7,7 @@ use super::coarse::shown_pixel;
 use super::estimate::PixelEstimate;
 use super::film::Film;
 
-/// One thing that a film knows of each pixel beside its light.
+/// A layer (AOV) of the film beside the beauty pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layer {
     /// Emission of volumes that the camera sees directly, radiance.
@@ -29,7 +29,7 @@ pub enum Layer {
 }
 
 impl Layer {
-    /// All of them, in the order of menus.
+    /// All layers, in the order of menus.
     pub const ALL: [Self; 8] = [
         Self::Emission,
         Self::Direct,
@@ -41,12 +41,12 @@ impl Layer {
         Self::Steps,
     ];
 
-    /// Whether it is light, shown as a picture is; else it is a number.
+    /// Whether the layer is light, shown as a picture is; else it is a number.
     pub fn is_light(self) -> bool {
         matches!(self, Self::Emission | Self::Direct | Self::Indirect | Self::Background)
     }
 
-    /// Its name in menus.
+    /// Name of the layer in menus.
     pub fn name(self) -> &'static str {
         match self {
             Self::Emission => "Emission",
@@ -83,7 +83,7 @@ impl Layer {
 /// A layer of a picture, row 0 on top; a pixel without samples shows its block.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LayerMap {
-    /// Which one, if any.
+    /// The layer, if any is shown.
     pub layer: Option<Layer>,
     /// The pixels of a layer of light, as linear RGB and 1.
     pub light: Vec<[f32; 4]>,

@@ -14,10 +14,10 @@ use super::thread_time::thread_seconds;
 use crate::error::{Error, Result};
 use crate::transport::{PixelSampler, Prepared, SampleNumber};
 
-/// How the threads stand against the rest of the machine.
+/// Priority of the threads against other programs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Priority {
-    /// As any other program.
+    /// Normal priority, that of any other program.
     Normal,
     /// Behind others, so that a window stays fluent while all cores sample. On systems other than
     /// Linux the same as [`Priority::Normal`].
@@ -68,7 +68,7 @@ pub struct WorkOutcome {
     pub cpu_seconds: f64,
     /// Whether the whole piece was done.
     pub complete: bool,
-    /// The first failure that a thread reported.
+    /// First failure that a thread reported.
     pub failure: Option<Failure>,
 }
 
@@ -104,7 +104,8 @@ impl Pool {
     /// Runs the pilot pass of `sampler` on these threads; `None` if `stop` said so earlier.
     ///
     /// # Errors
-    /// What kept it from doing so.
+    ///
+    /// The failure of a thread.
     pub fn prepare(
         &self,
         sampler: &dyn PixelSampler,
@@ -154,7 +155,7 @@ impl Pool {
     }
 }
 
-/// How many rows of a tile a thread takes at once: a path or more at that stride.
+/// Number of rows of a tile that a thread takes at once: enough for a path or more at that stride.
 fn rows_at_once(stride: u32) -> usize {
     (stride * stride / TILE).max(1) as usize
 }
@@ -311,7 +312,7 @@ mod tests {
         assert_eq!(rendered(4), one);
     }
 
-    /// Much more work costs more, on whichever threads it is done.
+    /// More work costs more CPU time, on whichever threads it is done.
     #[test]
     fn the_cpu_time_is_that_of_the_work() {
         let seconds = |cost| {

@@ -13,10 +13,10 @@ use super::publish::{
 use super::schedule::{Limits, Next, Schedule};
 use crate::transport::{PixelSampler, Prepared};
 
-/// One render under way.
+/// A progressive render under way.
 pub struct ProgressiveRender {
     sampler: Arc<dyn PixelSampler>,
-    /// What its pilot pass found, once that has run.
+    /// Result of the pilot pass, once that has run.
     prepared: Option<Prepared>,
     film: Film,
     schedule: Schedule,
@@ -28,14 +28,14 @@ pub struct ProgressiveRender {
     cpu_seconds: f64,
 }
 
-/// What a step came to.
+/// Result of one step of a render.
 #[derive(Debug)]
 pub enum RenderStep {
     /// A piece of work was done.
     Worked,
-    /// It was broken off; the next step takes it up again.
+    /// The work was interrupted; the next step takes it up again.
     Interrupted,
-    /// Nothing to do while paused.
+    /// The render is paused, so there is nothing to do.
     Paused,
     /// The limit is reached.
     Done,

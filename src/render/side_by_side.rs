@@ -1,5 +1,5 @@
-//! Rendering two settings of one scene without a window, on the same threads and in turns, so that
-//! both have had the same share whenever they are compared.
+//! Rendering two settings of one scene without a window, on the same threads in alternating time
+//! slices, so that both have had the same share whenever they are compared.
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -14,9 +14,9 @@ use crate::transport::PixelSampler;
 
 pub use super::time_slice::RenderedSide;
 
-/// What to compare and for how long.
+/// A comparison without a window: two samplers and their limits.
 pub struct PairJob {
-    /// What to sample for A and for B.
+    /// Samplers of A and B.
     pub samplers: [Arc<dyn PixelSampler>; 2],
     /// Width and height of both in pixels.
     pub size: UVec2,
@@ -30,13 +30,13 @@ pub struct PairJob {
     pub threads: Option<usize>,
 }
 
-/// What became of both.
+/// Films and figures of both sides.
 pub struct RenderedPair {
     /// A and B.
     pub sides: [RenderedSide; 2],
     /// The threads that rendered them.
     pub pool: Pool,
-    /// Whether the interrupt ended it.
+    /// Whether the interrupt ended the render.
     pub interrupted: bool,
 }
 
@@ -55,8 +55,8 @@ pub fn render_side_by_side(
     let [a, b] = job.samplers;
     let mut sides =
         [SideInProgress::new(a, job.size, amount)?, SideInProgress::new(b, job.size, amount)?];
-    let interrupted = take_turns(&mut sides, &pool, interrupt, &mut |accounts| {
-        if let [a, b] = accounts {
+    let interrupted = take_turns(&mut sides, &pool, interrupt, &mut |usages| {
+        if let [a, b] = usages {
             progress(&[*a, *b]);
         }
     });

@@ -18,7 +18,7 @@ use crate::transport::PixelSampler;
 pub(super) struct Mailbox {
     pub request: Option<Request>,
     pub improvement: Option<Improvement>,
-    /// Where copies of the film go.
+    /// Receivers of copies of the film.
     pub snapshots: Vec<Sender<Film>>,
     pub paused: bool,
     pub extras: Extras,
@@ -45,13 +45,13 @@ pub(super) struct Shared {
     /// at once.
     pub improved: AtomicBool,
     pub latest: Mutex<Option<Arc<Picture>>>,
-    /// Why the latest request stopped, with its generation.
+    /// Failure that stopped the latest request, with its generation.
     pub failure: Mutex<Option<(u64, Failure)>>,
     on_publish: Box<dyn Fn() + Send + Sync>,
 }
 
 impl Shared {
-    /// No message yet; `on_publish` is called after each picture and each failure.
+    /// A state without messages; `on_publish` is called after each picture and each failure.
     pub fn new(on_publish: impl Fn() + Send + Sync + 'static) -> Self {
         Self {
             mailbox: Mutex::default(),
