@@ -49,7 +49,7 @@ pub fn told(results: impl IntoIterator<Item = Result<()>>) -> Result<()> {
     last
 }
 
-/// Where it is tried instead, one after the other.
+/// Folders that are tried instead, one after the other.
 fn places() -> Vec<PathBuf> {
     std::env::current_dir().into_iter().chain([std::env::temp_dir()]).collect()
 }

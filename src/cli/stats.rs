@@ -1,4 +1,4 @@
-//! What `--stats` writes.
+//! Statistics that `--stats` writes.
 
 use std::io::Write;
 use std::path::Path;

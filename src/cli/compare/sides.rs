@@ -11,7 +11,7 @@ use crate::transport::strategy::Preset;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StrategyChoice {
     text: String,
-    /// As `--set` takes them.
+    /// Overrides of the strategy, as `--set` takes them.
     set: Vec<String>,
 }
 
@@ -26,15 +26,16 @@ impl FromStr for StrategyChoice {
 }
 
 impl StrategyChoice {
-    /// As it was written.
+    /// Text of the side as it was written.
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// `settings` with this strategy; `option` is what the user wrote it after.
+    /// `settings` with this strategy; `option` is the option that the user wrote it after.
     ///
     /// # Errors
-    /// Names the option, the key and the mend. Keys that are not the strategy's are refused: with
+    ///
+    /// Names the option, the key and the fix. Keys that are not the strategy's are refused: with
     /// them the two sides would be two pictures.
     pub fn over(&self, settings: &Settings, option: &str) -> Result<Settings> {
         let overrides = Overrides { preset: None, set: self.set.clone() };
