@@ -104,7 +104,6 @@ impl Pool {
     /// Runs the pilot pass of `sampler` on these threads; `None` if `stop` said so earlier.
     ///
     /// # Errors
-    ///
     /// The failure of a thread.
     pub fn prepare(
         &self,

@@ -22,7 +22,6 @@ use surfaces::LightOrSurface;
 /// a scene of which only numbers have changed is built in a few milliseconds.
 ///
 /// # Errors
-///
 /// The settings are not valid, or a volume cannot be read; names the file, the key and the fix.
 pub fn assemble(settings: &Settings, cache: &VolumeCache, progress: Progress) -> Result<Scene> {
     super::validate(settings, "")?;
@@ -51,7 +50,6 @@ pub fn assemble(settings: &Settings, cache: &VolumeCache, progress: Progress) ->
 /// The camera of the settings.
 ///
 /// # Errors
-///
 /// The camera has no direction; names the key.
 pub fn camera(settings: &Settings) -> Result<Camera> {
     let camera = &settings.camera;

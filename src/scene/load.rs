@@ -31,7 +31,6 @@ pub fn scene_file(source: &str) -> Option<&Path> {
 /// The settings of a scene file, of a bare volume, or of `builtin:NAME`.
 ///
 /// # Errors
-///
 /// The source cannot be read, or something in it is wrong; names the file, the key and the fix.
 pub fn load(source: &str) -> Result<Settings> {
     let cache = VolumeCache::default();
@@ -42,7 +41,6 @@ pub fn load(source: &str) -> Result<Settings> {
 /// in `cache`.
 ///
 /// # Errors
-///
 /// Those of [`load`], and [`Error::Cancelled`].
 pub fn open(
     source: &str,

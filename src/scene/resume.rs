@@ -29,7 +29,6 @@ pub struct Compatibility {
 /// The settings that the snapshot `name` was rendered with.
 ///
 /// # Errors
-///
 /// The header holds no scene of this version; names the key and the fix.
 pub fn settings_of(header: &SnapshotHeader, name: &str) -> Result<Settings> {
     parse(&header.scene, name, Path::new("/"), &Overrides::default())

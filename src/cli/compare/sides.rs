@@ -34,7 +34,6 @@ impl StrategyChoice {
     /// `settings` with this strategy; `option` is the option that the user wrote it after.
     ///
     /// # Errors
-    ///
     /// Names the option, the key and the fix. Keys that are not the strategy's are refused: with
     /// them the two sides would be two pictures.
     pub fn over(&self, settings: &Settings, option: &str) -> Result<Settings> {
