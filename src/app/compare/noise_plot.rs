@@ -1,4 +1,4 @@
-//! How noise and errors fall with the time spent, of one picture or of two, on logarithmic axes.
+//! Plot of noise and errors over the time spent, of one picture or of two, on logarithmic axes.
 
 use egui::{Align2, Color32, Pos2, Rect, Sense, Stroke, TextStyle, Ui, pos2, vec2};
 
@@ -41,7 +41,7 @@ impl Range {
         Some(Self { low, high })
     }
 
-    /// Where a point lies in `rect`.
+    /// Position of a point in `rect`.
     fn place(&self, rect: Rect, point: [f64; 2]) -> Pos2 {
         let share = |axis: usize| {
             let span = self.high[axis] - self.low[axis];

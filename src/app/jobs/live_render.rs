@@ -25,13 +25,14 @@ const PATIENCE: Duration = Duration::from_millis(250);
 pub enum News {
     /// A file was opened.
     Opened {
-        /// Where it came from, as the user named it.
+        /// Name of the source, as the user gave it.
         source: String,
-        /// Its scene.
+        /// Settings of the scene.
         settings: Box<Settings>,
         /// The guesses made for a bare volume.
         notes: Vec<Note>,
-        /// How it goes on, where it was a snapshot, which keeps the size of its film.
+        /// Notice on how a snapshot goes on, where one was opened, which keeps the size of its
+        /// film.
         reopened: Option<Notice>,
     },
     /// A file could not be opened, or a sample could not be taken.
@@ -61,10 +62,10 @@ pub struct LiveRender {
     refused: Option<Settings>,
     started: Option<Started>,
     generation: u64,
-    /// The latest generation whose failure was told.
+    /// Latest generation whose failure was reported.
     failed: u64,
     paused: bool,
-    /// Whether it waits for something else that needs the machine.
+    /// Whether the render waits for something else that needs the machine.
     held: bool,
     extras: Extras,
     /// The pixels that get all samples.
@@ -213,7 +214,7 @@ impl LiveRender {
         self.started.as_ref().map(|started| &started.settings)
     }
 
-    /// Whether that is the scene of these settings, on whatever film.
+    /// Whether the render is of the scene of these settings, on whatever film.
     pub fn renders(&self, settings: &Settings) -> bool {
         self.rendered().is_some_and(|rendered| same_scene(rendered, settings))
     }
@@ -229,7 +230,7 @@ impl LiveRender {
         self.session.set_paused(paused || self.held);
     }
 
-    /// Whether it waits for something else that needs the machine.
+    /// Whether the render waits for something else that needs the machine.
     pub fn held(&self) -> bool {
         self.held
     }

@@ -143,7 +143,7 @@ fn guided_scattering(
     });
 }
 
-/// How smoke is walked through: to lamps, and to where light scatters.
+/// Rows for the trackers and estimators in smoke: towards lamps, and for distances.
 fn walks(ui: &mut Ui, strategy: &mut Strategy, edit: &mut Option<&'static str>) {
     let estimator = &mut strategy.advanced.transmittance;
     if choice(ui, "Shadow rays", "strategy.advanced.transmittance", estimator) {

@@ -98,7 +98,7 @@ fn fixed_size(ui: &mut Ui, film: &mut FilmSettings, reset: [u32; 2], largest: u3
 struct Whole<'a> {
     name: &'a str,
     key: &'a str,
-    /// What 0 means in words.
+    /// Word for 0.
     none: Option<&'a str>,
     unit: &'a str,
     /// The value that a double click goes back to.

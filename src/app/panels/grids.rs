@@ -41,7 +41,7 @@ pub fn show(
     edit
 }
 
-/// A click on what a grid glows by already puts its glow out.
+/// Gives the grid a role; a click on the role of emission that it already has ends the emission.
 fn take_or_give(role: Role, volume: &mut VolumeSettings, grid: &GridDescription) {
     if !role.is_of(volume, &grid.name) {
         role.give(volume, grid);
@@ -119,7 +119,8 @@ pub fn histogram_bars(painter: &Painter, rect: Rect, voxels: &VoxelDescription, 
     }
 }
 
-/// What the grid may be for, what it is for, and whether that is a guess; the one that was clicked.
+/// Buttons for the roles that the grid may have, its role, and whether that is a guess; the role
+/// that was clicked.
 fn roles<'n>(
     ui: &mut Ui,
     volume: &VolumeSettings,

@@ -20,7 +20,7 @@ const SHAPES: [(SurfaceShape, &str, &str); 4] = [
     (SurfaceShape::Sphere, "Sphere", "A sphere."),
     (SurfaceShape::Box, "Box", "An axis-aligned box."),
 ];
-/// What a new surface measures, in sizes of what fills space.
+/// Size of a new surface, in sizes of what fills space.
 const NEW_SIZE: f32 = 0.25;
 const MATERIALS: [(Option<MaterialKind>, &str, &str); 4] = [
     (None, "Auto", "Diffuse gray, or black if the surface emits."),
@@ -150,7 +150,7 @@ fn buttons(ui: &mut Ui, surfaces: &mut Vec<SurfaceSettings>, index: usize) -> Op
     edit
 }
 
-/// Shape, place, material and glow; the name of the edit if anything changed.
+/// Rows for shape, place, material and emission; the name of the edit if anything changed.
 fn keys(
     ui: &mut Ui,
     surface: &mut SurfaceSettings,
@@ -226,7 +226,7 @@ fn place(
     changed.then_some("place of a surface")
 }
 
-/// How large it is; whether that changed.
+/// Rows for the measures of a surface; whether one changed.
 fn measures(
     ui: &mut Ui,
     surface: &mut SurfaceSettings,

@@ -45,7 +45,8 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
     });
 }
 
-/// What was guessed, struck out where it does not stand any more: what is below stays where it is.
+/// Notes on guesses, struck out where a guess no longer holds, so that what is below stays in its
+/// place.
 fn notes(ui: &mut Ui, panel: &Panel<'_>) {
     let volumes = |document: &Document| document.settings.volume.first().cloned();
     let present = volumes(&panel.editor.document).zip(volumes(panel.editor.opened()));
@@ -63,7 +64,7 @@ fn notes(ui: &mut Ui, panel: &Panel<'_>) {
     }
 }
 
-/// What a volume is called: its name, or its file, or its shape.
+/// Title of a volume: its name, or its file, or its shape.
 fn title(volume: &VolumeSettings, index: usize) -> String {
     if !volume.name.is_empty() {
         return volume.name.clone();
@@ -101,7 +102,7 @@ fn up_axis_row(
     Some("up axis")
 }
 
-/// One click for all that a program's files have in common.
+/// Buttons that set everything that a program's files have in common.
 fn programs(
     ui: &mut Ui,
     settings: &mut Settings,

@@ -19,7 +19,7 @@ use lens::Lens;
 
 /// Reach of the hand around a handle, in points.
 const REACH: f32 = 9.0;
-/// How far an arrow key moves a handle that has the focus, in points.
+/// Step of an arrow key for a handle that has the focus, in points.
 const NUDGE: f32 = 8.0;
 /// Radius of the dot of a handle, in points.
 const DOT: f32 = 4.0;
@@ -27,7 +27,7 @@ const DOT: f32 = 4.0;
 /// The light that is selected and the grip on one of its handles.
 #[derive(Default)]
 pub struct Gizmo {
-    /// Which light has handles; none is drawn otherwise.
+    /// Index of the light that has handles; none are drawn otherwise.
     pub selected: Option<usize>,
     grip: Option<Grip>,
 }
@@ -37,7 +37,7 @@ struct Grip {
     handle: Handle,
     /// The light as it was when the drag began.
     light: LightSettings,
-    /// Where the drag began.
+    /// Position where the drag began.
     from: Pos2,
 }
 

@@ -1,4 +1,4 @@
-//! A rectangular region of the picture that figures are told of: drawn by hand, or typed.
+//! A region of the picture with figures of its own: drawn by hand, or typed.
 
 use egui::{CursorIcon, PointerButton, Rect, Response, Stroke, StrokeKind, Ui};
 use glam::{UVec2, Vec2};
@@ -14,9 +14,9 @@ pub struct PictureRegion {
     armed: bool,
     /// The area that it covers of a picture of this size.
     chosen: Option<(Area, UVec2)>,
-    /// Whether it gets all samples, and the rest of the picture none.
+    /// Whether the region gets all samples, and the rest of the picture none.
     pub is_alone: bool,
-    /// Where the drag under way began, in pixels of the picture that lies there.
+    /// Start of the drag under way, in pixels of the picture that lies there.
     from: Option<(Vec2, View)>,
 }
 

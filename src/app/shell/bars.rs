@@ -70,7 +70,7 @@ pub struct PathBar {
     /// The name of a file of which only the folder is typed.
     name: PathBuf,
     fresh: bool,
-    /// Whether the user was told that the file exists and will be replaced.
+    /// Whether the user was warned that the file exists and will be replaced.
     warned: bool,
 }
 

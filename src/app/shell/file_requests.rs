@@ -10,7 +10,7 @@ use crate::app::jobs::dialogs::{Dialog, DialogAnswer, Dialogs, Purpose};
 
 /// Paths that are asked for, files that were dropped, and saves under way.
 pub struct FileRequests {
-    /// How paths are asked for.
+    /// Kind of the dialogs that ask for paths.
     dialogs: Dialogs,
     /// The system dialog, while it is open.
     dialog: Option<Dialog>,
@@ -27,7 +27,7 @@ pub struct FileRequests {
 }
 
 impl FileRequests {
-    /// None yet; paths will be asked for by `dialogs`.
+    /// No requests yet; `dialogs` will ask for paths.
     pub fn new(dialogs: Dialogs) -> Self {
         Self {
             dialogs,

@@ -6,7 +6,7 @@ use crate::scene::Note;
 
 /// The scene that is open.
 pub struct Opened {
-    /// Its path or `builtin:NAME`; of a snapshot the name in the strip.
+    /// Path of the scene or `builtin:NAME`; of a snapshot the name in the strip.
     pub source: String,
     /// The guesses made when it was opened.
     pub notes: Vec<Note>,

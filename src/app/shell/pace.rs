@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 pub struct FramePace {
     /// The shortest time from frame to frame; `None`: frames come as they are asked for.
     shortest: Option<Duration>,
-    /// When the last frame began.
+    /// Time at which the last frame began.
     last: Option<Instant>,
 }
 

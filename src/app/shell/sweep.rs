@@ -1,4 +1,4 @@
-//! Where the window meets the sweep of all strategies: its progress below the picture, its results
+//! The sweep of all strategies, as the window shows it: its progress below the picture, its results
 //! in a window of their own, and the live render that waits for it.
 
 use egui::{Context, Rect, Ui};
@@ -25,7 +25,7 @@ impl App {
         }
     }
 
-    /// Shows how far it is.
+    /// Shows the progress of the sweep.
     pub(super) fn sweep_row(&mut self, ui: &mut Ui) {
         let Some(progress) = self.sweep.progress() else { return };
         let (what, fraction) = results::progress(&progress);

@@ -19,7 +19,7 @@ use crate::render::Picture;
 
 /// Room for a small picture, in points.
 const PICTURE: Vec2 = vec2(0.5 * LARGEST_THUMBNAIL.x as f32, 0.5 * LARGEST_THUMBNAIL.y as f32);
-/// Height of a line of text under it.
+/// Height of a line of text under a picture.
 const LINE: f32 = 15.0;
 /// Width of the field for a name.
 const NAME_WIDTH: f32 = 150.0;
@@ -245,7 +245,7 @@ fn figures(spp: f64, noise: Option<f64>) -> String {
     }
 }
 
-/// How long ago that was.
+/// Age of a snapshot in words.
 fn ago(kept: u64) -> String {
     let minutes = now().saturating_sub(kept) / 60_000;
     match minutes {

@@ -25,15 +25,15 @@ pub struct LoadedReference {
 /// The contents of a reference, as far as known.
 #[derive(Debug)]
 enum Shows {
-    /// Something.
+    /// Unknown contents.
     Unknown,
     /// The view of this camera.
     Camera(CameraSettings),
-    /// This scene.
+    /// A scene with these settings.
     Scene(Box<Settings>),
 }
 
-/// Where a reference comes from.
+/// Origin of a reference: a file, or a picture of the window.
 pub enum ReferenceOrigin {
     /// A file; the name is what the user calls it.
     File(String, PathBuf),
@@ -50,7 +50,7 @@ impl ReferenceOrigin {
 }
 
 impl LoadedReference {
-    /// Takes it from there.
+    /// Loads the reference from its origin.
     ///
     /// # Errors
     /// As [`Reference::load`] and [`Reference::new`].
@@ -68,9 +68,9 @@ impl LoadedReference {
         }
     }
 
-    /// Why errors against it mean little for a render of `settings`, if it is known to show
-    /// something else.
-    pub fn doubt(&self, settings: &Settings) -> Option<&'static str> {
+    /// Reason why errors against the reference mean little for a render of `settings`, if it is
+    /// known to show something else.
+    pub fn warning(&self, settings: &Settings) -> Option<&'static str> {
         match &self.shows {
             Shows::Unknown => None,
             Shows::Camera(camera) if *camera != settings.camera => Some("its camera differs"),

@@ -11,9 +11,9 @@ use super::gpu::{bind, texture};
 /// The pixels of the framebuffer that a part of the window covers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PixelRect {
-    /// Its upper left pixel.
+    /// Upper left pixel of the canvas.
     pub corner: [i32; 2],
-    /// Its width and height.
+    /// Width and height of the canvas in pixels.
     pub size: UVec2,
 }
 
@@ -57,7 +57,7 @@ impl GpuCanvas {
         Self { size, target, bindings }
     }
 
-    /// Whether it has that size.
+    /// Whether the canvas has that size.
     pub fn is_of(&self, size: UVec2) -> bool {
         self.size == size
     }
