@@ -40,7 +40,7 @@ pub struct Sums {
     pub background: [TwoFloat; 3],
     /// Light after one scatter or reflection.
     pub direct: [TwoFloat; 3],
-    /// Light after more than one.
+    /// Light after more than one scatter or reflection.
     pub indirect: [TwoFloat; 3],
     /// Alpha: one minus the transmittance to the background.
     pub alpha: TwoFloat,

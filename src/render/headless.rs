@@ -23,7 +23,7 @@ pub struct RenderJob {
     pub limits: Limits,
     /// A film to go on from.
     pub resume: Option<Film>,
-    /// Number of threads; none: one a core.
+    /// Number of threads; `None`: one per core.
     pub threads: Option<usize>,
 }
 
@@ -31,13 +31,13 @@ pub struct RenderJob {
 pub struct Headless {
     /// The film, consistent however the render ended.
     pub film: Film,
-    /// The threads that rendered it.
+    /// Threads that rendered the film.
     pub pool: Pool,
     /// Seconds of rendering.
     pub seconds: f64,
-    /// Whether the interrupt ended it.
+    /// Whether the interrupt ended the render.
     pub interrupted: bool,
-    /// The sample that ended it.
+    /// Failure of the sample that ended the render.
     pub failure: Option<Failure>,
 }
 

@@ -1,4 +1,4 @@
-//! Layers of a picture: parts of its light, depth, and what it cost, one number or color a pixel.
+//! Layers of a picture: parts of its light, depth, and cost, one number or color per pixel.
 
 use glam::UVec2;
 use rayon::prelude::*;
@@ -14,7 +14,7 @@ pub enum Layer {
     Emission,
     /// Light after one scattering event or reflection, radiance.
     Direct,
-    /// Light after more than one, radiance.
+    /// Light after more than one scattering event or reflection, radiance.
     Indirect,
     /// Environment and lights that the camera sees directly, radiance.
     Background,
@@ -87,7 +87,7 @@ pub struct LayerMap {
     pub layer: Option<Layer>,
     /// The pixels of a layer of light, as linear RGB and 1.
     pub light: Vec<[f32; 4]>,
-    /// The numbers of any other layer, 0 where there is none.
+    /// Numbers of a layer that is not light, 0 where there is none.
     pub numbers: Vec<f32>,
     /// Smallest and largest number other than zero, if there are any.
     pub range: Option<[f32; 2]>,

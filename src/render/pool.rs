@@ -1,4 +1,4 @@
-//! The threads that sample, and the one loop that does it.
+//! The pool of sampling threads, and the one loop that samples.
 
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -19,8 +19,8 @@ use crate::transport::{PixelSampler, Prepared, SampleNumber};
 pub enum Priority {
     /// Normal priority, that of any other program.
     Normal,
-    /// Behind others, so that a window stays fluent while all cores sample. On systems other than
-    /// Linux the same as [`Priority::Normal`].
+    /// Lower priority than others, so that a window stays fluent while all cores sample. On systems
+    /// other than Linux the same as [`Priority::Normal`].
     Background,
 }
 
@@ -61,10 +61,10 @@ impl std::fmt::Display for Failure {
 /// The outcome of a piece of work.
 #[derive(Debug)]
 pub struct WorkOutcome {
-    /// Counts of what was done, all of it or not.
+    /// Counts of the work done, complete or not.
     pub totals: Totals,
-    /// CPU time that the threads spent on it, in seconds; what threads of a sampler's own spend is
-    /// not among it.
+    /// CPU time that the threads spent on the work, in seconds, without that of a sampler's own
+    /// threads.
     pub cpu_seconds: f64,
     /// Whether the whole piece was done.
     pub complete: bool,
@@ -196,7 +196,7 @@ impl RowContext<'_> {
         width > 0 && representative(first, self.work.stride, self.size).y == first.y
     }
 
-    /// The sample of that index, if it may be taken.
+    /// The sample with that index, if it may be taken.
     fn number(&self, index: u32) -> Option<SampleNumber<'_>> {
         match (index, self.prepared) {
             (0, _) => Some(SampleNumber::First),

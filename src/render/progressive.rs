@@ -92,12 +92,12 @@ impl ProgressiveRender {
         self.go_on_with(sampler);
     }
 
-    /// Counts CPU time in, in seconds, that the samples it began with took.
+    /// Adds the CPU time, in seconds, of the samples that the render began with.
     pub fn count_in(&mut self, cpu_seconds: f64) {
         self.cpu_seconds += cpu_seconds;
     }
 
-    /// Goes on with another sampler of the same picture.
+    /// Continues with another sampler of the same picture.
     pub fn go_on_with(&mut self, sampler: Arc<dyn PixelSampler>) {
         (self.sampler, self.prepared) = (sampler, None);
     }
@@ -206,7 +206,7 @@ impl ProgressiveRender {
         self.seconds
     }
 
-    /// CPU time that the sampling threads have spent on it, in seconds.
+    /// CPU time that the sampling threads have spent on the render, in seconds.
     pub fn cpu_seconds(&self) -> f64 {
         self.cpu_seconds
     }
@@ -216,7 +216,7 @@ impl ProgressiveRender {
         self.schedule.set_limits(limits);
     }
 
-    /// The film as it stands.
+    /// The film in its present state.
     pub fn film(&self) -> &Film {
         &self.film
     }

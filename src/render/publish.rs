@@ -12,7 +12,7 @@ use super::layers::{Layer, LayerMap};
 /// A finished image of an unfinished render.
 #[derive(Clone, Debug, Default)]
 pub struct Picture {
-    /// The caller's number of the request it belongs to.
+    /// Generation of the request that the picture belongs to, numbered by the caller.
     pub generation: u64,
     /// Width and height.
     pub size: UVec2,
@@ -32,7 +32,7 @@ pub struct Picture {
     /// Blocks of 2 to this power pixels squared are of one color each, so that one pixel of each
     /// tells all; 0: any pixel may differ from the next.
     pub block_log2: u32,
-    /// Figures at the time it was made.
+    /// Figures at the time of the picture.
     pub stats: RenderStats,
 }
 

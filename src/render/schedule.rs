@@ -41,9 +41,9 @@ const COST_WEIGHT: f64 = 0.3;
 pub struct Work {
     /// Stride: only pixels that stand for a block of this side; 1: all.
     pub stride: u32,
-    /// Bring each of them to this many samples.
+    /// Number of samples to bring each pixel to.
     pub target: u32,
-    /// Among these tiles of the film.
+    /// Tiles of the film that the work covers.
     pub tiles: Range<usize>,
     /// Region to sample; `None`: the whole film.
     pub area: Option<Area>,
@@ -147,7 +147,7 @@ impl Schedule {
         Next::Work(Work { stride: self.stride, target: self.target, tiles, area })
     }
 
-    /// Takes note that some paths took some seconds, whether their work was completed or not.
+    /// Records that some paths took some seconds, whether their work was completed or not.
     pub fn measured(&mut self, paths: u64, seconds: f64) {
         if paths == 0 {
             return;
@@ -212,7 +212,7 @@ impl Schedule {
         if is_coarse { self.stride * 2 } else { 1 }
     }
 
-    /// Samples that every pixel has, or every one of those that get all.
+    /// Number of samples that every pixel has, or every pixel of the region that gets all.
     pub fn passes(&self) -> u32 {
         self.passes
     }
@@ -222,7 +222,7 @@ impl Schedule {
         self.limits
     }
 
-    /// Changes when it is to stop.
+    /// Changes the limits of the render.
     pub fn set_limits(&mut self, limits: Limits) {
         self.limits = limits;
     }

@@ -26,7 +26,7 @@ pub struct PairJob {
     /// shares of that, without it of samples. It ends with a whole piece of work, so it is exceeded
     /// by a little, which the sides tell.
     pub cpu_seconds: Option<f64>,
-    /// Number of threads; none: one a core.
+    /// Number of threads; `None`: one per core.
     pub threads: Option<usize>,
 }
 
@@ -34,7 +34,7 @@ pub struct PairJob {
 pub struct RenderedPair {
     /// A and B.
     pub sides: [RenderedSide; 2],
-    /// The threads that rendered them.
+    /// The threads that rendered both sides.
     pub pool: Pool,
     /// Whether the interrupt ended the render.
     pub interrupted: bool,

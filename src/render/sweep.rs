@@ -38,7 +38,7 @@ pub const DEFAULT_SECONDS: f64 = 3.0;
 /// Most pixels of a film whose size is not set.
 const MOST_PIXELS: f32 = 8192.0;
 
-/// The size of a film that is quick to measure and shows the same as one of `size` pixels.
+/// Size of a film that is quick to measure and representative of one of `size` pixels.
 pub fn quick_size(size: UVec2) -> UVec2 {
     let pixels = size.x as f32 * size.y as f32;
     let scale = (MOST_PIXELS / pixels.max(1.0)).sqrt().min(1.0);

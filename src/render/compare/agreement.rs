@@ -9,10 +9,11 @@ use super::tally::Tally;
 use crate::math::ACCUMULATORS;
 use crate::render::area::Area;
 
-/// The chance that two settings which do agree are said to differ, in one check of all blocks.
+/// Probability of a false alarm in one check of all blocks: that settings which agree are said to
+/// differ.
 pub const ALARM: f64 = 1.0e-3;
 
-/// Fewer samples than this in any pixel, and no verdict is given: each accumulator has to have one.
+/// Fewest samples of any pixel for a verdict: one for each accumulator.
 pub const FEWEST_SAMPLES: u32 = ACCUMULATORS as u32;
 
 /// Differences below this share of the brightness may come of rounding to `f32` along the path.

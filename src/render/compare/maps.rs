@@ -1,4 +1,4 @@
-//! A number a pixel: where two films differ and where each of them is noisy.
+//! Maps of two films: their difference and the noise of each.
 
 use glam::UVec2;
 use rayon::prelude::*;

@@ -7,11 +7,11 @@ use crate::render::estimate::FEWEST_FOR_VARIANCE;
 /// Standard errors on either side of an estimate that hold the truth with 95 %.
 const CONFIDENCE: f64 = 1.96;
 
-/// Relative error of the ratio of two CPU times: the same work repeats to about
-/// this, also when both sides take turns.
+/// Relative error of the ratio of two CPU times: the same work repeats to about this, also when
+/// both sides alternate.
 const TIMING_ERROR: f64 = 0.03;
 
-/// A ratio known no better than to this factor (95 %) is not said to be a tie: it is not known.
+/// Factor of the 95 % interval beyond which a ratio is not said to be a tie: it is unknown.
 const TOO_WIDE: f64 = 1.5;
 
 /// Speed-up of B over A, the factor by which it reaches a given noise faster: the ratio of their
@@ -20,7 +20,7 @@ const TOO_WIDE: f64 = 1.5;
 pub struct SpeedUp {
     /// The time that A needs over that of B; below 1 where A is the faster.
     pub ratio: f64,
-    /// Standard error of its logarithm, which is nearly that of the ratio relative to it.
+    /// Standard error of the logarithm of the ratio, nearly the relative error of the ratio.
     pub log_error: f64,
 }
 
@@ -57,7 +57,7 @@ impl SpeedUp {
         low > 1.0 || high < 1.0
     }
 
-    /// Whether so little is known that it is no tie either: it is too early to tell.
+    /// Whether the ratio is too uncertain to call a tie.
     pub fn is_vague(&self) -> bool {
         !self.is_clear() && self.factor() > TOO_WIDE
     }

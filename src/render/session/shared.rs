@@ -12,8 +12,8 @@ use crate::render::pool::Failure;
 use crate::render::publish::{Extras, Picture};
 use crate::transport::PixelSampler;
 
-/// Wishes of the callers. The render thread takes requests, improvements and snapshots out when it
-/// reads them; the rest stands until it is changed.
+/// Messages of the callers. The render thread takes requests, improvements and snapshots out when
+/// it reads them; the rest stands until it is changed.
 #[derive(Default)]
 pub(super) struct Mailbox {
     pub request: Option<Request>,
@@ -29,7 +29,7 @@ pub(super) struct Mailbox {
 /// The outcome of the wait of a provisional request.
 pub(super) struct Improvement {
     pub generation: u64,
-    /// The better sampler; `None`: the request keeps the one it has.
+    /// The better sampler; `None`: the request continues with its first one.
     pub sampler: Option<Arc<dyn PixelSampler>>,
 }
 

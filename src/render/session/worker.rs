@@ -34,7 +34,7 @@ pub(super) struct Worker {
     extras: Extras,
     /// Whether extras were asked for since the last picture.
     owes_extras: bool,
-    /// The token by which it takes turns with another session, if it does.
+    /// The token by which the session asks for time slices, if it shares the machine.
     turn_token: Option<TurnToken>,
     /// The pixels that get all samples.
     area: Option<Area>,
@@ -86,7 +86,7 @@ impl Worker {
         self.take_turns_by(None);
     }
 
-    /// Works if it is this session's turn.
+    /// Works if the session has the time slice.
     fn take_turn(&mut self) -> Wait {
         let Some(token) = self.turn_token.clone() else { return self.work() };
         if !token.begin(self.usage()) {
@@ -151,7 +151,7 @@ impl Worker {
         true
     }
 
-    /// Locks the mailbox when there is nothing to wait for any more.
+    /// Locks the mailbox once there is nothing to wait for any more.
     fn wait_for<'s>(&self, wait: Wait, shared: &'s Shared) -> MutexGuard<'s, Mailbox> {
         let mailbox = lock(&shared.mailbox);
         let nothing_new = |_: &mut Mailbox| shared.epoch.load(Ordering::Relaxed) == self.epoch;

@@ -10,8 +10,8 @@ use crate::transport::toggle::Toggle;
 pub struct RankedTrial {
     /// The trial.
     pub trial: Trial,
-    /// Noise and cost: its own, or those of the trial that does the same; none where it could not
-    /// be rendered.
+    /// Noise and cost: the trial's own, or those of the one that does the same; `None` where it
+    /// could not be rendered.
     pub side: Option<SideFigures>,
     /// Speed-up over the baseline; `None` while nothing is known of it.
     pub over_baseline: Option<SpeedUp>,
@@ -98,12 +98,12 @@ impl RankedTrial {
         self.over_best.is_some_and(|speed_up| !speed_up.is_clear() && !speed_up.is_vague())
     }
 
-    /// Whether so little is known that it may well be the best or far from it.
+    /// Whether the trial may well be the best or far from it, as its figures are too uncertain.
     pub fn is_vague(&self) -> bool {
         self.over_best.is_some_and(|speed_up| speed_up.is_vague())
     }
 
-    /// Whether its noise and its cost are known.
+    /// Whether noise and cost of the trial are known.
     fn is_known(&self) -> bool {
         self.side.is_some_and(|side| side.is_noiseless() || side.variance_times_time().is_some())
     }
