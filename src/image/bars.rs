@@ -1,4 +1,4 @@
-//! Bars on a logarithmic axis, as a PNG: how many times as good things are as one of them.
+//! Bar chart of ratios on a logarithmic axis, as a PNG.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ use crate::error::Result;
 pub struct Bar<'a> {
     /// Name of the bar, left of it.
     pub name: &'a str,
-    /// The number, above 0, and the ends of the interval that holds it; none where it is not known.
+    /// The number, above 0, and the ends of its confidence interval; `None` where it is not known.
     pub value: Option<(f64, [f64; 2])>,
     /// Text at the end of the bar.
     pub label: &'a str,
@@ -22,7 +22,7 @@ pub struct Bar<'a> {
 
 /// Bars to draw, which begin at 1.
 pub struct Bars<'a> {
-    /// A sentence above them.
+    /// Sentence above the bars.
     pub title: &'a str,
     /// Quantity of the axis, with its unit.
     pub axis: &'a str,
@@ -44,7 +44,7 @@ const BOTTOM: i32 = 40;
 const BAR: [u8; 3] = [92, 120, 158];
 const BAR_OUT: [u8; 3] = [255, 159, 67];
 
-/// Draws `bars` and writes them.
+/// Draws `bars` and writes them as a PNG.
 ///
 /// # Errors
 /// When the system refuses to write.

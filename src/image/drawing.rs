@@ -52,7 +52,7 @@ pub(super) struct Canvas {
 }
 
 impl Canvas {
-    /// An empty one.
+    /// An empty canvas of `size` pixels.
     pub fn new(size: UVec2) -> Self {
         let pixels = size.x as usize * size.y as usize;
         Self { size, codes: color::BACKGROUND.repeat(pixels) }
@@ -71,7 +71,7 @@ impl Canvas {
         Ok(width as i32)
     }
 
-    /// Colors one pixel; off the canvas, none.
+    /// Sets the color of one pixel; does nothing off the canvas.
     pub fn put(&mut self, at: UVec2, color: [u8; 3]) {
         if at.cmplt(self.size).all() {
             let index = 3 * (at.y as usize * self.size.x as usize + at.x as usize);
@@ -110,7 +110,7 @@ impl Canvas {
         self.draw(&Text::new(text.to_owned(), at, font.pos(Pos::new(across, VPos::Center))))
     }
 
-    /// Writes it as a PNG.
+    /// Writes the canvas as a PNG.
     ///
     /// # Errors
     /// When the system refuses to.

@@ -1,4 +1,4 @@
-//! Pictures as somebody looked at them, with names, a legend, figures and words, as a PNG.
+//! Exported pictures with names, a legend, figures and words, as a PNG.
 
 use std::path::Path;
 
@@ -62,7 +62,7 @@ const DARK: [u8; 3] = [19, 19, 19];
 /// Color of dividers and of the frame of a region, in sRGB codes.
 const LIGHT: [u8; 3] = [238, 238, 238];
 
-/// Draws `export` and writes it.
+/// Draws `export` and writes it as a PNG.
 ///
 /// # Errors
 /// When the system refuses to write.
@@ -153,7 +153,7 @@ fn chip(canvas: &mut Canvas, text: &str, (low, high): (i32, i32), align: Align) 
 }
 
 impl FigureTable {
-    /// Draws it from `top` on down, a column every `step` pixels; where it ends.
+    /// Draws the table from `top` on down, a column every `step` pixels; returns its end.
     fn draw(&self, canvas: &mut Canvas, top: i32, step: i32) -> Result<i32> {
         let mut y = top + LINE / 2;
         for (row, tint) in std::iter::once((&self.headings, color::DIM))

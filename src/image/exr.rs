@@ -70,7 +70,7 @@ pub fn write(path: &Path, film: &Film, header: &SnapshotHeader) -> Result<()> {
     })
 }
 
-/// Reads what `path` says about itself, without its pixels.
+/// Reads the header of the EXR file at `path`, without its pixels.
 ///
 /// # Errors
 /// When it cannot be read or is no EXR.
@@ -111,7 +111,7 @@ fn info(path: &Path, data: &MetaData) -> Result<Info> {
 /// A snapshot read back.
 #[derive(Debug)]
 pub struct Snapshot {
-    /// The film, as it was when it was written.
+    /// The film as it was written.
     pub film: Film,
     /// Header of the snapshot.
     pub header: SnapshotHeader,

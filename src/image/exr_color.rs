@@ -1,4 +1,4 @@
-//! The color of any EXR, whoever wrote it.
+//! The color of any EXR, of Flambeau or another program.
 
 use std::path::Path;
 
