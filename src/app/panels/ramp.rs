@@ -53,7 +53,8 @@ fn span(stops: &[Stop], voxels: Option<&VoxelDescription>) -> RangeInclusive<f32
     low..=if high > low { high } else { low + 1.0 }
 }
 
-/// The same, but as it was while a stop is dragged: it must not follow the hand.
+/// The values that the ramp is drawn over, unchanged while a stop is dragged: the ramp must not
+/// move under the pointer.
 fn steady_span(
     ui: &Ui,
     memory: Id,

@@ -92,7 +92,7 @@ struct Display {
     panes: [GpuPane; PANES],
 }
 
-/// A picture on the graphics card and how it is looked at.
+/// A picture on the graphics card and its view.
 struct GpuPane {
     view: wgpu::Buffer,
     shown: Option<UploadedPicture>,
@@ -129,15 +129,15 @@ pub fn largest_size(state: &RenderState) -> u32 {
     state.device.limits().max_texture_dimension_2d
 }
 
-/// A picture and where it is to be shown.
+/// A picture and its place in the window.
 pub struct Shot {
     /// The picture.
     pub picture: Arc<Picture>,
-    /// The data of it that is shown, and how.
+    /// Look of the picture.
     pub look: Look,
     /// Placement of the picture, from the corner of `area`.
     pub placement: Placement,
-    /// The part of the window that it is laid out in, in points.
+    /// Part of the window that the picture is laid out in, in points.
     pub area: egui::Rect,
     /// The part of that which is seen.
     pub clip: egui::Rect,

@@ -17,7 +17,7 @@ use crate::scene::settings::LightSettings;
 use figure::{Figure, Handle, HandlePart};
 use lens::Lens;
 
-/// Reach of the hand around a handle, in points.
+/// Radius around a handle in which a press takes it, in points.
 const REACH: f32 = 9.0;
 /// Step of an arrow key for a handle that has the focus, in points.
 const NUDGE: f32 = 8.0;
@@ -32,7 +32,7 @@ pub struct Gizmo {
     grip: Option<Grip>,
 }
 
-/// A handle in the hand.
+/// A handle that is being dragged.
 struct Grip {
     handle: Handle,
     /// The light as it was when the drag began.
@@ -119,7 +119,7 @@ impl Gizmo {
         }
     }
 
-    /// The light as the hand has moved it.
+    /// The light as it has been dragged.
     fn pull(&self, ui: &Ui, lens: &Lens, pivot: Vec3A) -> Option<LightSettings> {
         let Grip { handle, light, from } = self.grip.as_ref()?;
         let to = ui.input(|input| input.pointer.latest_pos())?;

@@ -20,9 +20,9 @@ pub enum Look {
 pub enum TextureData {
     /// The linear light of the picture itself.
     Pixels,
-    /// The linear light of its layer.
+    /// The linear light of the picture's layer.
     Light,
-    /// The numbers of its layer.
+    /// The numbers of the picture's layer.
     Numbers,
 }
 

@@ -16,7 +16,7 @@ pub struct View {
     pub factor: f32,
     /// Width and height of the picture.
     pub size: UVec2,
-    /// Whether the pointer is on it, and nothing in front.
+    /// Whether the pointer is on the picture, and nothing in front.
     pub hovered: bool,
     /// The pixel that was clicked in this frame.
     pub clicked: Option<UVec2>,

@@ -49,7 +49,7 @@ pub enum Shown {
     Nothing,
     /// One picture.
     One(Arc<Picture>, Look),
-    /// Two of the same place, the second from this share of the width on.
+    /// Two pictures of the same view, the second from this share of the width on.
     Wipe([Arc<Picture>; 2], Look, f32),
     /// Two beside each other, zoomed and moved as one.
     Beside([Arc<Picture>; 2], Look),

@@ -37,7 +37,7 @@ pub struct SavedView {
 }
 
 impl SavedView {
-    /// Writes it as a PNG.
+    /// Writes the view as a PNG.
     ///
     /// # Errors
     /// When there is no picture, or the system refuses to write.

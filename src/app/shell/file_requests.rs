@@ -20,7 +20,7 @@ pub struct FileRequests {
     pub waiting: Vec<(Purpose, PathBuf)>,
     /// The snapshot that a path is being asked for, where one was shown.
     pub subject: Option<String>,
-    /// A dropped picture, until the user says what it is for.
+    /// A dropped picture, until the user says whether to open it or measure against it.
     pub dropped: Option<PathBuf>,
     /// The saves under way.
     pub saver: Saver,

@@ -29,7 +29,7 @@ pub enum PaletteChoice {
 }
 
 impl Palette {
-    /// Shows it over the upper part of the picture.
+    /// Shows the palette over the upper part of the picture.
     pub fn show(&mut self, ctx: &Context) -> PaletteChoice {
         let mut open = true;
         let window = Window::new("All commands")

@@ -71,7 +71,7 @@ impl Preferences {
         serde_json::from_str(&text).unwrap_or_default()
     }
 
-    /// Writes it to `data`.
+    /// Writes the preferences to `data`.
     ///
     /// # Errors
     /// When the system refuses; names the file.
@@ -83,7 +83,7 @@ impl Preferences {
         files::replace(&path, |file| file.write_all(&text).map_err(|error| Error::io(&path, error)))
     }
 
-    /// Notes that `source` was opened. What is built in is always at hand.
+    /// Adds `source` to the recent files. Embedded scenes are always offered and need no entry.
     pub fn note(&mut self, source: &str) {
         if source.starts_with("builtin:") {
             return;
@@ -139,7 +139,7 @@ pub fn data_folder(chosen: Option<PathBuf>) -> Option<PathBuf> {
     chosen.or_else(named).or_else(|| eframe::storage_dir("flambeau"))
 }
 
-/// The name of what was opened, the same from every folder.
+/// Full name of a source, the same from every folder.
 pub fn full_name(source: &str) -> String {
     if source.starts_with("builtin:") {
         return source.to_owned();

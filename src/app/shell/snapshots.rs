@@ -51,7 +51,7 @@ impl App {
         self.snapshots.keep(keep);
     }
 
-    /// The name of a source: of a snapshot of the strip its own.
+    /// Name of a source: of a snapshot of the strip its own.
     pub(super) fn name_of(&self, source: String) -> String {
         self.snapshots.name_of(Path::new(&source)).map_or(source.clone(), str::to_owned)
     }

@@ -10,7 +10,7 @@ use crate::app::sweep::results;
 use crate::app::ui::theme;
 
 impl App {
-    /// Starts what was asked for, takes in what was found, and lets the live render wait meanwhile.
+    /// Starts a requested sweep, takes in its results, and lets the live render wait meanwhile.
     pub(super) fn update_sweep(&mut self, ctx: &Context) {
         let Some(size) = self.film_size() else { return };
         let settings = &self.editor.document.settings;

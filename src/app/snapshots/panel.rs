@@ -28,7 +28,7 @@ const BUTTONS_WIDTH: f32 = 440.0;
 /// Room that the button takes which undoes a deletion.
 const UNDO_WIDTH: f32 = 100.0;
 
-/// Shows the strip; gives what its buttons ask for. `live` is the picture behind.
+/// Shows the strip; returns what its buttons ask for. `live` is the live picture.
 pub fn show(ui: &mut Ui, snapshots: &mut Snapshots, live: Option<&Arc<Picture>>) -> Vec<Command> {
     let mut commands = Vec::new();
     head(ui, snapshots, &mut commands);

@@ -29,7 +29,7 @@ pub struct StripItem {
 pub enum SmallPicture {
     /// The picture is not on the graphics card yet.
     Waiting(ColorImage),
-    /// There.
+    /// The picture is on the graphics card.
     Ready(TextureHandle),
 }
 
@@ -128,7 +128,7 @@ impl Strip {
         self.moved = true;
     }
 
-    /// Whether what is shown has changed since this was last asked.
+    /// Whether the picture shown has changed since this was last asked.
     pub fn take_moved(&mut self) -> bool {
         std::mem::take(&mut self.moved)
     }

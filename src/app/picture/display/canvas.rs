@@ -26,7 +26,7 @@ impl PixelRect {
         Self { corner: [place.left_px, place.top_px], size: size.into() }
     }
 
-    /// The part of it that lies in `other`, from the corner of that.
+    /// The part of the canvas that lies in `other`, from the corner of that.
     pub fn within(&self, other: &Self) -> Self {
         let corner = IVec2::from(self.corner) - IVec2::from(other.corner);
         let first = corner.max(IVec2::ZERO).as_uvec2().min(other.size);
@@ -43,7 +43,7 @@ pub(super) struct GpuCanvas {
 }
 
 impl GpuCanvas {
-    /// An empty one. `view` holds how it lies in the window.
+    /// An empty canvas. `view` holds its place in the window.
     pub fn new(
         device: &wgpu::Device,
         layout: &wgpu::BindGroupLayout,
@@ -62,12 +62,12 @@ impl GpuCanvas {
         self.size == size
     }
 
-    /// The bindings that copy it to the window.
+    /// Bindings that copy the canvas to the window.
     pub fn bindings(&self) -> &wgpu::BindGroup {
         &self.bindings
     }
 
-    /// Draws the part of it that is `seen`, with a pipeline and what that reads.
+    /// Draws the `seen` part of the canvas, with a pipeline and its bindings.
     pub fn draw(
         &self,
         encoder: &mut wgpu::CommandEncoder,

@@ -51,7 +51,7 @@ impl Handle {
         }
     }
 
-    /// The effect of dragging it.
+    /// Effect of dragging the handle.
     pub fn help(self) -> &'static str {
         match self {
             Self::Center => "Drag to move the light parallel to the picture.",
@@ -69,7 +69,7 @@ impl Handle {
         }
     }
 
-    /// The shape that it is drawn as.
+    /// Shape that the handle is drawn as.
     pub fn part(self) -> HandlePart {
         match self {
             Self::Axis(axis) => HandlePart::Axis(axis),
