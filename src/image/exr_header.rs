@@ -24,10 +24,10 @@ pub struct SnapshotHeader {
     pub strategy: String,
     /// The seed of all samples.
     pub seed: u64,
-    /// The version of Flambeau that wrote it.
+    /// Version of Flambeau that wrote the snapshot.
     pub version: String,
-    /// The version of the paths in it, [`PATH_VERSION`](crate::transport::PATH_VERSION) of the
-    /// Flambeau that wrote it.
+    /// Version of the paths of the snapshot, [`PATH_VERSION`](crate::transport::PATH_VERSION) of
+    /// the Flambeau that wrote it.
     pub path_version: u64,
     /// Wall-clock seconds spent on the picture, over all its sessions.
     pub wall_seconds: f64,
@@ -35,7 +35,7 @@ pub struct SnapshotHeader {
     pub cpu_seconds_setup: f64,
     /// CPU seconds spent on rendering.
     pub cpu_seconds_render: f64,
-    /// The files that the scene names, as they were when it was rendered; empty if unknown.
+    /// Files that the scene names, as they were when the snapshot was rendered; empty if unknown.
     pub files: Vec<Fingerprint>,
 }
 
@@ -56,7 +56,7 @@ const TRACKING_STEPS: &str = "flambeau.tracking_steps";
 const NON_FINITE: &str = "flambeau.non_finite_samples";
 const GUARD_HITS: &str = "flambeau.guard_hits";
 
-/// The path version of snapshots that do not tell it, which are those of Flambeau 0.1.0.
+/// Path version of snapshots that state none, which are those of Flambeau 0.1.0.
 const FIRST_PATH_VERSION: u64 = 1;
 
 /// The attributes of a snapshot of `film`.

@@ -1,4 +1,4 @@
-//! A number a pixel as a picture in the colors of a ramp, with its legend below, as a PNG.
+//! A number per pixel as a picture in the colors of a ramp, with its legend below, as a PNG.
 
 use std::path::Path;
 
@@ -56,7 +56,7 @@ impl Colors {
     }
 }
 
-/// Draws `map` and writes it.
+/// Draws `map` and writes it as a PNG.
 ///
 /// # Errors
 /// When the system refuses to write.

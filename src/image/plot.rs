@@ -39,7 +39,7 @@ const SIZE: UVec2 = UVec2::new(900, 560);
 const FIELD: [i32; 4] = [90, 74, 876, 496];
 const COLORS: [[u8; 3]; 2] = [[94, 169, 255], [255, 159, 67]];
 
-/// Draws `plot` and writes it.
+/// Draws `plot` and writes it as a PNG.
 ///
 /// # Errors
 /// When the system refuses to write.

@@ -86,8 +86,8 @@ impl Scale {
         Self { low: low.max(high / MOST_SPAN), high }
     }
 
-    /// The same, its ends moved outwards to 1, 2 or 5 times a power of ten, so that it rests while
-    /// the numbers still change a little.
+    /// A scale as of [`Self::exact`], its ends moved outwards to 1, 2 or 5 times a power of ten, so
+    /// that it rests while the numbers still change a little.
     pub fn rounded(range: [f32; 2]) -> Self {
         let Self { low, high } = Self::exact(range);
         let round = |value: f32, up: bool| {

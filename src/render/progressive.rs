@@ -191,7 +191,7 @@ impl ProgressiveRender {
         self.schedule.is_finished(self.seconds)
     }
 
-    /// Whether there is something to show.
+    /// Whether there is a picture to show.
     pub fn has_picture(&self) -> bool {
         self.schedule.has_picture()
     }

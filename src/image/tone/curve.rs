@@ -12,11 +12,11 @@ pub enum ToneCurve {
     /// A shoulder that lets fire go through yellow to white, and a toe that keeps blacks deep.
     #[default]
     Filmic,
-    /// Softer: bright colors fade to white early, as in Blender's view of the same name.
+    /// AgX, softer: bright colors fade to white early, as in Blender's view of that name.
     Agx,
 }
 
-/// Beyond this curves are flat; also keeps their squares finite.
+/// Input beyond which curves are flat; also keeps squares finite.
 const BRIGHTEST: f32 = 1.0e4;
 
 /// AgX: stops of middle gray's light that the curve starts and ends at, over 1.

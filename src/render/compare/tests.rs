@@ -229,7 +229,7 @@ fn pictures_tell_the_same_as_their_films() {
     }
 }
 
-/// Where a region gets all samples, its pixels have their own counts, and the rest theirs.
+/// Where a region gets all samples, figures of the region use its samples, and the rest its own.
 #[test]
 fn a_region_with_all_samples_is_known_better_than_the_rest() {
     use crate::render::publish::Picture;

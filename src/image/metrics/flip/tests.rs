@@ -6,7 +6,7 @@ use crate::image::tone::ToneCurve;
 
 type Codes = Vec<[u8; 3]>;
 
-/// Ramps that wrap around, and the same with changes of all kinds: of noise, of color, of blocks.
+/// Ramps that wrap around, and a copy with changes of all kinds: of noise, of color, of blocks.
 fn ramps(size: UVec2) -> (Codes, Codes) {
     let pixels = (0..size.y as i32).flat_map(|y| (0..size.x as i32).map(move |x| (x, y)));
     pixels
