@@ -18,12 +18,12 @@ pub struct Named<'a> {
 }
 
 impl<'a> Named<'a> {
-    /// A file and what it is to the command.
+    /// A file and its name in messages.
     pub fn new(what: &'a str, path: &'a Path) -> Self {
         Self { what, path, continues: false }
     }
 
-    /// A snapshot to go on from, or one that goes on from it.
+    /// A snapshot to resume, or one that continues it.
     pub fn snapshot(what: &'a str, path: &'a Path) -> Self {
         Self { continues: true, ..Self::new(what, path) }
     }

@@ -85,7 +85,7 @@ pub struct Arguments {
 struct Prepared {
     settings: Settings,
     sampler: Arc<dyn PixelSampler>,
-    /// CPU seconds of preparing it, of placing probes above all.
+    /// CPU seconds of preparing the side, of placing probes above all.
     setup: f64,
 }
 

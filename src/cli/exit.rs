@@ -15,7 +15,7 @@ pub enum Exit {
 pub struct Refusal {
     /// The reason.
     pub error: Error,
-    /// The exit code that goes with it.
+    /// Exit code of the error.
     pub exit: Exit,
 }
 

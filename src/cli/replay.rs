@@ -94,7 +94,7 @@ fn triple(value: Vec3A) -> String {
     format!("({}, {}, {})", value.x, value.y, value.z)
 }
 
-/// The contributions of the path to its pixel.
+/// Contributions of the path to its pixel.
 fn summary(sample: &PathSample) -> String {
     let mut text = String::new();
     let rows = [

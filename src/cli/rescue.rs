@@ -1,4 +1,4 @@
-//! Another place for what cannot be written where it should be: nothing that was rendered is lost.
+//! Other places for files that cannot be written where they should be: nothing rendered is lost.
 
 use std::io;
 use std::path::{Path, PathBuf};

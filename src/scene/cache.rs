@@ -68,7 +68,8 @@ pub enum GridValues {
 }
 
 impl VolumeCache {
-    /// The file of that name (`builtin:NAME` for an embedded one), read again if it has changed.
+    /// The volume file of that name (`builtin:NAME` for an embedded one), read again if it has
+    /// changed.
     ///
     /// # Errors
     /// It cannot be read or is not a volume file; names the file.
@@ -130,7 +131,7 @@ impl BuiltVolume {
 }
 
 impl VolumeFile {
-    /// The name it was asked for by.
+    /// Name by which the file was requested.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -202,7 +203,7 @@ impl PlacedGrid {
         Self { name: info.name.clone(), class: info.class, values, world_from_index }
     }
 
-    /// The box around its stored voxels in index space, both ends included; `None` if empty.
+    /// Box around the stored voxels in index space, both ends included; `None` if empty.
     pub fn bounds(&self) -> Option<IndexBox> {
         match &self.values {
             GridValues::Float(grid) => grid.bounds(),

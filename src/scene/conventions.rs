@@ -31,7 +31,7 @@ impl Program {
         }
     }
 
-    /// The axis of its files that points up.
+    /// Axis of the program's files that points up.
     pub fn up(self) -> Axis {
         match self {
             Self::Houdini => Axis::Y,

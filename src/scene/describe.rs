@@ -12,7 +12,7 @@ use crate::volume::vdb::GridInfo;
 /// A volume file in words and numbers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FileDescription {
-    /// The name it was asked for by.
+    /// Name by which the file was requested.
     pub file: String,
     /// The file's own named values.
     pub metadata: Vec<(String, String)>,
@@ -25,9 +25,9 @@ pub struct FileDescription {
 pub struct GridDescription {
     /// Name of the grid.
     pub name: String,
-    /// The type of its values: `float`, `half float`, `vec3`, ... as the file says.
+    /// Type of the grid's values: `float`, `half float`, `vec3`, ... as the file says.
     pub type_name: String,
-    /// The class that the file gives it: `fog volume`, `level set`, ...
+    /// Class that the file gives the grid: `fog volume`, `level set`, ...
     pub class: String,
     /// Edges of a voxel in the file's space.
     pub voxel_size: [f64; 3],
@@ -52,7 +52,7 @@ pub struct VoxelDescription {
     pub mean: f32,
     /// The corners of the box around the stored voxels in the file's space; `None` if empty.
     pub bounds: Option<[[f32; 3]; 2]>,
-    /// Memory that they take.
+    /// Memory of the voxels in bytes.
     pub memory_bytes: usize,
     /// Histogram of the values from `min` to `max`; of vectors of their largest components.
     pub histogram: Histogram,

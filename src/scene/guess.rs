@@ -35,13 +35,13 @@ pub struct Guess {
 
 /// Appearance of a volume: how thick and how bright it is made.
 struct Appearance {
-    /// Words in the file's name that ask for it.
+    /// Words in the file's name that select the appearance.
     words: &'static [&'static str],
     /// The optical depth of a fairly thick line of sight.
     depth: f32,
-    /// The share of light that it scatters.
+    /// Albedo: the share of light that is scattered.
     albedo: f32,
-    /// The radiance of a fairly bright line of sight through its fire, if nothing hid it.
+    /// Radiance of a fairly bright line of sight through the fire, if nothing hid it.
     radiance: f32,
 }
 

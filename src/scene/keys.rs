@@ -15,18 +15,18 @@ pub struct Key {
     /// Type of the value: `number`, `[number, number, number]`, `"a" | "b"`, ...
     #[serde(rename = "type")]
     pub kind: String,
-    /// The unit, if it has one.
+    /// Unit of the value, if it has one.
     pub unit: Option<String>,
     /// Default value as TOML; `None` where absence is a meaning of its own.
     pub default: Option<String>,
-    /// The bounds of each number in it, if there are any.
+    /// Bounds of each number in the value, if there are any.
     pub range: Option<String>,
     /// The same as the smallest and the largest number; infinite where there is no bound.
     #[serde(skip)]
     pub limits: [f64; 2],
     /// Help text of the key.
     pub help: String,
-    /// The choices it belongs to (`shape = "sphere"`), if it does not always apply.
+    /// Choices that the key belongs to (`shape = "sphere"`), if it does not always apply.
     pub only: Option<String>,
 }
 

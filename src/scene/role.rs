@@ -41,7 +41,7 @@ impl Role {
         grid.class != "level set" && grid.voxels.is_some_and(|voxels| fits(voxels.is_vector))
     }
 
-    /// The grid that is named like it.
+    /// The grid whose name fits the role best.
     pub fn best_of(self, grids: &[GridDescription]) -> Option<&GridDescription> {
         let rank = |grid: &&GridDescription| {
             self.names().iter().position(|name| grid.name.eq_ignore_ascii_case(name))
@@ -72,7 +72,7 @@ impl Role {
         }
     }
 
-    /// Has `volume` use `grid` so. How thick and how bright it is stays as far as it can.
+    /// Has `volume` use `grid` in this role. Its thickness and brightness stay as far as they can.
     pub fn give(self, volume: &mut VolumeSettings, grid: &GridDescription) {
         let Some(mode) = self.mode() else {
             volume.density.grid = Some(grid.name.clone());

@@ -45,7 +45,7 @@ impl StrategyChoice {
         })
     }
 
-    /// The options that lead another command to it, each with a space before.
+    /// Options that lead another command to this strategy, each with a space before.
     pub fn in_words(&self) -> String {
         self.set.iter().map(|assignment| format!(" --set {}", quoted(assignment))).collect()
     }

@@ -33,7 +33,7 @@ pub struct CompareTable {
     pub agreement: AgreementRow,
 }
 
-/// The figures of one side; those that `render --stats` has too carry the same names.
+/// Figures of one side; those that `render --stats` has too carry the same names.
 #[derive(Debug, Serialize)]
 pub struct SideRow {
     #[serde(skip)]
@@ -139,7 +139,7 @@ pub struct AgreementRow {
     verdict: &'static str,
     /// Differences looked at.
     tests: usize,
-    /// The chance of a false alarm in all of them.
+    /// Probability of a false alarm in all tests together.
     alarm: f64,
     overall: Option<DifferenceRow>,
     worst: Option<DifferenceRow>,

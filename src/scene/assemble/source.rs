@@ -32,7 +32,7 @@ pub(super) struct ShapeSource {
     pub(super) cell_size: Vec3A,
 }
 
-/// Either of them.
+/// Source of a volume's values: a file or a shape.
 pub(super) enum VolumeSource<'a> {
     Grids(GridSource<'a>),
     Shape(ShapeSource),

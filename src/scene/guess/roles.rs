@@ -11,7 +11,7 @@ pub(super) struct Candidate {
     pub(super) grid: PlacedGrid,
     /// Largest active value of the grid; for colors of the largest channel.
     pub(super) max: f32,
-    /// The mean of its active values.
+    /// Mean of the grid's active values.
     pub(super) mean: f32,
 }
 
@@ -35,7 +35,7 @@ impl Candidate {
         self.rank(names).is_some()
     }
 
-    /// The place of its name among `names`.
+    /// Position of the grid's name among `names`.
     fn rank(&self, names: &[&str]) -> Option<usize> {
         names.iter().position(|name| self.grid.name.eq_ignore_ascii_case(name))
     }
