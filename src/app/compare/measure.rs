@@ -79,7 +79,7 @@ impl Plotted {
         }
     }
 
-    /// The power of time that it falls with while all of it is noise, if there is one.
+    /// Exponent of time with which the quantity falls while all of it is noise, if there is one.
     pub fn power(self) -> Option<f64> {
         match self {
             Self::Noise => Some(0.5),

@@ -9,7 +9,7 @@ use crate::render::compare::NoiseHistory;
 
 /// Height of the plot.
 const HEIGHT: f32 = 150.0;
-/// Room for the numbers left of it and below it.
+/// Room for the numbers left of the plot and below it, in points.
 const MARGIN: egui::Vec2 = vec2(44.0, 18.0);
 
 /// The colors of A and of B.

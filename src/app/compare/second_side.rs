@@ -162,7 +162,7 @@ impl SecondSide {
         stored.or(self.last.map(|compared| compared.main))
     }
 
-    /// Whether there are two sides.
+    /// Whether there is a second side.
     pub fn is_on(&self) -> bool {
         self.second_render.is_some() || self.stored.is_some()
     }

@@ -31,7 +31,7 @@ pub enum CellValue {
 pub struct Cell {
     /// Corners of the cell, numbered by the bits x, y, z.
     pub corners: [Vec3A; 8],
-    /// The edge of a cube of its volume.
+    /// Edge of the cube of the cell's volume.
     pub edge: f32,
     /// Value that the cell is colored by.
     pub value: f32,
@@ -89,7 +89,7 @@ impl Cells {
         Self { strongest, total: sieve.total }
     }
 
-    /// The scale from the weakest to the strongest of them; none without cells.
+    /// Scale from the weakest to the strongest cell; `None` without cells.
     pub fn scale(&self) -> Option<Scale> {
         let (first, last) = (self.strongest.first()?, self.strongest.last()?);
         Some(Scale::exact([first.value, last.value]))

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use crate::app::command::Command;
 
-/// The purpose of a path that is asked for.
+/// Purpose of a path that the user is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
     /// A scene, a volume or a snapshot to open.

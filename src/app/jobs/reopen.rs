@@ -12,7 +12,7 @@ use crate::scene::{self, Settings};
 
 /// A reopened snapshot: its film and a notice.
 pub struct Reopened {
-    /// The samples that it goes on from; none where it is rendered anew.
+    /// Samples that the render goes on from; `None` where it starts anew.
     pub resume: Option<Resume>,
     /// Notice on how the render goes on, put behind the name of the snapshot.
     pub notice: Notice,

@@ -136,7 +136,7 @@ fn programs(
     Some("export conventions")
 }
 
-/// Whether what was guessed still stands.
+/// Whether a guess still holds.
 fn stands(note: &Note, volume: &VolumeSettings, opened: &VolumeSettings) -> bool {
     match note.about {
         About::UpAxis => volume.rotate == opened.rotate,

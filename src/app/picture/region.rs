@@ -38,7 +38,7 @@ impl PictureRegion {
         was
     }
 
-    /// Whether there is one.
+    /// Whether there is a region.
     pub fn is_set(&self) -> bool {
         self.chosen.is_some()
     }

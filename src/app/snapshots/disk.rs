@@ -53,7 +53,7 @@ pub struct Keep {
     pub settings: Settings,
     /// Seconds spent on the film.
     pub seconds: f64,
-    /// CPU time spent on it, in seconds.
+    /// CPU time spent on the film, in seconds.
     pub cpu_seconds: f64,
     /// Tone mapping of the thumbnail.
     pub tone: Tone,

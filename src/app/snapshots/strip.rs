@@ -41,7 +41,7 @@ pub struct Strip {
     shown: Option<usize>,
     /// The deleted snapshots, the latest last, each with the place it had.
     deleted: Vec<(usize, StripItem)>,
-    /// Whether what is shown has changed since the strip was last drawn.
+    /// Whether another picture is shown since the strip was last drawn.
     moved: bool,
     /// Whether the picture shown should bring its variance along.
     pub wants_variance: bool,
@@ -56,7 +56,7 @@ impl StripItem {
         Self { entry, record, thumbnail, picture: None, unreadable: false }
     }
 
-    /// The picture, once it is read.
+    /// Picture of the snapshot, once it is read.
     pub fn picture(&self) -> Option<&Arc<Picture>> {
         self.picture.as_ref()
     }
@@ -257,7 +257,7 @@ impl Strip {
         std::iter::once(name.to_owned()).chain(numbered).find(is_free).unwrap_or_default()
     }
 
-    /// Bytes that all of them take on the disk.
+    /// Size of all snapshots on the disk, in bytes.
     pub fn bytes(&self) -> u64 {
         self.items.iter().map(|item| item.entry.bytes).sum()
     }

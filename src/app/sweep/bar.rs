@@ -23,7 +23,7 @@ pub struct BarAxis {
 }
 
 impl BarAxis {
-    /// Covers all of a ranking with its errors, and 1, where bars begin.
+    /// An axis that covers all of a ranking with its errors, and 1, where bars begin.
     pub fn over(ranking: &Ranking) -> Self {
         let known = ranking.entries.iter().filter_map(|entry| entry.over_baseline);
         let ends = known.flat_map(|speed_up| speed_up.interval()).map(f64::log10);

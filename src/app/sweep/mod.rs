@@ -202,8 +202,7 @@ impl Sweep {
 }
 
 impl Results {
-    /// Whether the scene, the camera or a finer choice of the strategy is another one than it was
-    /// tried with.
+    /// Whether the scene, the camera or a finer choice of the strategy has changed since the sweep.
     pub fn is_stale(&self, settings: &Settings) -> bool {
         let (tried, now) = (&self.settings.strategy, &settings.strategy);
         !same_shot(&self.settings, settings)

@@ -10,14 +10,14 @@ use crate::render::Picture;
 use crate::scene::settings::CameraSettings;
 use crate::scene::{self, Settings};
 
-/// A reference and what is known about it.
+/// A loaded reference with what it shows.
 #[derive(Debug)]
 pub struct LoadedReference {
-    /// The user's name for it.
+    /// The user's name for the reference.
     pub name: String,
     /// The picture.
     pub reference: Reference,
-    /// The file it came from.
+    /// File that the reference came from.
     pub path: Option<PathBuf>,
     shows: Shows,
 }
@@ -98,7 +98,7 @@ fn camera(path: &Path) -> Option<CameraSettings> {
 pub struct Loading(mpsc::Receiver<Result<LoadedReference>>);
 
 impl Loading {
-    /// Starts to take it from `origin`; `wake` is called once it is there.
+    /// Starts to load a reference from `origin`; `wake` is called once it is there.
     ///
     /// # Errors
     /// When the system refuses to start a thread.
