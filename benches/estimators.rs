@@ -21,7 +21,7 @@ use flambeau::{
 use glam::{UVec2, Vec3A};
 
 const RAYS: usize = 1500;
-/// Estimates along each ray in a turn.
+/// Estimates along each ray in a time slice.
 const ESTIMATES: u32 = 24;
 const TURNS: u32 = 8;
 

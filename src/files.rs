@@ -78,14 +78,14 @@ fn temporary(path: &Path, place: &Path) -> Result<NamedTempFile> {
     })
 }
 
-/// The state of a file, to tell it from others.
+/// Fingerprint of a file: its name, size and hash, to tell it from others.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Fingerprint {
     /// The file's name.
     pub name: String,
     /// Length of the file in bytes.
     pub bytes: u64,
-    /// The 64-bit FNV-1a hash of its content, in hexadecimal.
+    /// 64-bit FNV-1a hash of the content, in hexadecimal.
     pub hash: String,
 }
 

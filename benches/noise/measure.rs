@@ -62,7 +62,7 @@ impl Noise {
     }
 }
 
-/// A picture in gray, and the steps it took.
+/// A picture in gray, and its steps.
 struct Picture {
     pixels: Vec<f64>,
     steps: u64,

@@ -17,9 +17,9 @@ pub struct BenchScene {
     pub name: &'static str,
     /// Purpose of the scene.
     pub shows: &'static str,
-    /// The tables it is in.
+    /// The tables that the scene is in.
     pub tables: &'static [Table],
-    /// Whether choosing among lights matters in it.
+    /// Whether choosing among lights matters in the scene.
     pub many_lights: bool,
     /// A circle of pixels, center and radius, that is left out of the variance: where a light is
     /// seen directly, hit or miss drowns what the scene is about.
@@ -119,7 +119,7 @@ pub fn all() -> Vec<BenchScene> {
 }
 
 impl BenchScene {
-    /// Reads and builds it; `None`, said aloud, where what it needs is absent.
+    /// Reads and builds the scene; `None`, with a message, where its files are absent.
     pub fn build(&self) -> Option<Scene> {
         let root = Path::new(env!("CARGO_MANIFEST_DIR"));
         let file = root.join(SCENES).join(self.file);

@@ -48,7 +48,7 @@ const COLUMNS: [(&str, usize); 12] = [
     ("eq time", 10),
 ];
 
-/// Measures every row and prints it.
+/// Measures every row of a table and prints it.
 pub fn print(scene: &BenchScene, built: &Scene, rows: &[Row], plan: &Plan) {
     println!("\n## {}: {}\n", scene.name, scene.shows);
     print_cells(&COLUMNS.map(|(name, _)| name.to_owned()));

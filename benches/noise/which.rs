@@ -1,4 +1,4 @@
-//! The tables that can be asked for.
+//! The tables of the benchmark.
 
 /// A table of the benchmark: a kind of comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -48,7 +48,7 @@ impl Target {
 }
 
 impl Stream {
-    /// Writes all of `content` into it. A reader that goes before the end wants no more of it.
+    /// Writes all of `content` into the stream. A reader that closes before the end is no error.
     pub(crate) fn take(&self, content: &mut File) -> io::Result<()> {
         let mut stream = match own_stream(&self.0) {
             Some(file) => file?,
