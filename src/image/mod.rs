@@ -1,11 +1,11 @@
 //! Pictures on disk and their way to a screen.
 //!
-//! - [`exr`]: snapshots, which hold everything and can be continued; `exr_header`, `exr_layout`: their
-//!   attributes and channels; `exr_color`: the color of any EXR.
+//! - [`exr`]: snapshots, which hold everything and can be continued.
+//! - `exr_header`, `exr_layout`: their attributes and channels; `exr_color`: the color of any EXR.
 //! - [`npy`], `npy_header`: the beauty for scripts, as a numpy array.
 //! - [`png`]: the picture as the screen shows it, through the curves of [`tone`].
 //! - [`ramp`]: colors of numbers; [`map`]: a number per pixel as a picture with its [`legend`].
-//! - [`plot`]: curves over time; [`bars`]: a bar chart; `log_axis`, `drawing`: their axes and canvas.
+//! - [`plot`]: curves over time; [`bars`]: a bar chart; `log_axis`, `drawing`: axes and canvas.
 //! - [`export`]: a view with its figures below.
 //! - [`metrics`]: errors of a picture against a [`reference`](mod@reference).
 

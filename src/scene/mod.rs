@@ -7,7 +7,7 @@
 //!
 //! - `load`, `files`, `embedded`: opening a source by name; [`cache`]: volume files in memory.
 //! - `parse`, `overrides`: TOML text to settings; `save`: settings to text.
-//! - `check`, `rules`: errors in keys and values; `schema`, [`keys`]: the schema and the list of keys.
+//! - `check`, `rules`: errors in keys and values; `schema`, [`keys`]: the schema and its keys.
 //! - [`settings`]: the settings struct; [`effect`]: toggles that change nothing in a scene.
 //! - `assemble`: settings to the scene that is rendered.
 //! - `guess`, `conventions`, `grid_names`, `role`: settings for a bare volume; `frame`: its camera.
