@@ -7,7 +7,7 @@
 //! - `jobs`: from edits to pictures, without ever blocking the window.
 //! - `picture`: the picture and the input on it.
 //! - `compare`: two strategies side by side, errors against a reference.
-//! - `snapshots`: stored pictures in a strip; `sweep`: every strategy tried on the shot, and ranked.
+//! - `snapshots`: stored pictures in a strip; `sweep`: every strategy tried on the shot and ranked.
 //! - `diagnostics`: cells over the picture and maps in its place.
 //! - `panels`: the column of settings.
 //! - `shell`: the window itself.
