@@ -1,8 +1,9 @@
-//! What the transmittance estimators and the trackers are worth, ray by ray: variance x cost.
+//! Worth of the transmittance estimators and the trackers, ray by ray: variance x cost.
 //!
 //! `cargo bench --bench estimators` prints a table per medium. Rays leave random points of the
 //! volume's box, for a lamp above it (transmittance) and for random directions (flights). The cost
-//! is CPU time; all rows of a table are timed in turns, so that their ratios hold on a busy machine.
+//! is CPU time; all rows of a table are timed in alternating time slices, so that their ratios hold
+//! on a busy machine.
 
 use std::{hint::black_box, path::Path};
 
@@ -20,7 +21,7 @@ use flambeau::{
 use glam::{UVec2, Vec3A};
 
 const RAYS: usize = 1500;
-/// Estimates along each ray in a turn.
+/// Estimates along each ray in a time slice.
 const ESTIMATES: u32 = 24;
 const TURNS: u32 = 8;
 
@@ -72,7 +73,7 @@ fn rays(scene: &Scene, target: impl Fn(&mut PathRng, Vec3A) -> (Vec3A, f32)) -> 
 /// A row under measurement.
 #[derive(Default)]
 struct Tally {
-    /// By ray: Σ x and Σ x² per channel.
+    /// Σ x and Σ x² per channel, ray by ray.
     sums: Vec<[Rgb; 2]>,
     seconds: f64,
     reads: u64,

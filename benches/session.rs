@@ -1,5 +1,5 @@
-//! From an edit to the next picture: the scene built again from its settings, the running render
-//! dropped, the first coarse picture of the new one published.
+//! Time from an edit to the next picture: the scene built again from its settings, the running
+//! render dropped, the first coarse picture of the new one published.
 
 use std::sync::{Arc, mpsc};
 

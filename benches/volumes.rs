@@ -112,7 +112,7 @@ mod sparse {
     }
 }
 
-/// The same on a plain array, clamped at its faces: what sparseness costs.
+/// A plain array, clamped at its faces, as a baseline: what sparseness costs.
 mod dense {
     use super::*;
 

@@ -1,14 +1,13 @@
-//! The errors of the whole crate: each names the file or key, what is wrong and how to mend it.
+//! The errors of the whole crate: each names the file or key, what is wrong and how to fix it.
 
 use std::path::{Path, PathBuf};
 
 /// `Result` with the crate's [`Error`].
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
-/// Why a request could not be carried out.
-///
-/// `file` is a path or another name the user knows (`builtin:torch`, `--set`); `field` is the
-/// dotted key, grid name or section inside it and may be empty.
+/// Reason for which a request could not be carried out. `file` is a path or another name the user
+/// knows (`builtin:torch`, `--set`); `field` is the dotted key, grid name or section inside it and
+/// may be empty.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// The operating system refused to read or write.
@@ -16,7 +15,7 @@ pub enum Error {
     Io {
         /// The file in question.
         path: PathBuf,
-        /// What the system said.
+        /// Error of the operating system.
         #[source]
         source: std::io::Error,
     },
@@ -27,7 +26,7 @@ pub enum Error {
         file: String,
         /// The key, grid or section; may be empty.
         field: String,
-        /// What is wrong and how to mend it.
+        /// Reason, and how to fix it.
         reason: String,
     },
     /// The input is well formed but asks for something that Flambeau does not do.
@@ -37,7 +36,7 @@ pub enum Error {
         file: String,
         /// The key, grid or section; may be empty.
         field: String,
-        /// What is asked for and what to do instead.
+        /// The unsupported feature, and what to do instead.
         reason: String,
     },
     /// The caller cancelled the work.
@@ -70,7 +69,7 @@ impl Error {
     }
 }
 
-/// What the system said, with what to do where that is known.
+/// Message of the operating system, with advice where there is some.
 fn refusal(source: &std::io::Error) -> String {
     use std::io::ErrorKind as Kind;
     let known = match source.kind() {

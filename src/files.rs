@@ -1,4 +1,4 @@
-//! Files as wholes: written whole or not at all, and told apart by what is in them.
+//! Files as wholes: written completely or not at all, and told apart by their contents.
 
 mod folder;
 mod identity;
@@ -78,14 +78,14 @@ fn temporary(path: &Path, place: &Path) -> Result<NamedTempFile> {
     })
 }
 
-/// The state of a file, to tell it from others.
+/// Fingerprint of a file: its name, size and hash, to tell it from others.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Fingerprint {
     /// The file's name.
     pub name: String,
-    /// Its length in bytes.
+    /// Length of the file in bytes.
     pub bytes: u64,
-    /// The 64-bit FNV-1a hash of its content, in hexadecimal.
+    /// 64-bit FNV-1a hash of the content, in hexadecimal.
     pub hash: String,
 }
 
@@ -174,7 +174,7 @@ mod tests {
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3);
     }
 
-    /// Nothing is left behind where a file could be written, and the reason told where not.
+    /// A trial leaves nothing behind where a file could be written, and gives the reason where not.
     #[test]
     fn whether_a_file_could_be_written_is_tried() {
         let folder = tempfile::tempdir().unwrap();

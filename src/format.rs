@@ -12,7 +12,7 @@ pub fn rounded(value: f64, digits: i32) -> String {
     if (1e-5..1e7).contains(&value.abs()) { value.to_string() } else { format!("{value:.1e}") }
 }
 
-/// One part of `factor` parts, with two digits that count: 1/38.
+/// One part of `factor` parts, with two significant digits: 1/38.
 pub fn one_part_of(factor: f64) -> String {
     format!("1/{}", rounded(factor, 2))
 }
@@ -22,7 +22,7 @@ pub fn mebibytes(bytes: usize) -> String {
     format!("{:.1} MiB", bytes as f64 / f64::from(1 << 20))
 }
 
-/// A number of samples a pixel that goes up while one looks: 12.3 spp.
+/// A growing number of samples per pixel: 12.3 spp.
 pub fn samples_per_pixel(samples: f64) -> String {
     format!("{samples:.1} spp")
 }

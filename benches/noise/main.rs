@@ -63,7 +63,7 @@ impl Arguments {
         }
     }
 
-    /// The scenes and rows that are asked for.
+    /// The requested scenes and rows.
     fn selection(&self) -> Vec<(BenchScene, Vec<Row>)> {
         let word = self.filters.iter().find_map(|filter| Table::named(filter));
         let table = word.unwrap_or(Table::Toggles);

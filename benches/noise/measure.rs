@@ -23,7 +23,7 @@ pub const SEEDS: [usize; 2] = [8, 64];
 /// convention under which other renderers were measured.
 pub const THREADS: f64 = 2.0;
 
-/// How much is rendered for a figure.
+/// Amount of work for one figure.
 pub struct Plan {
     /// Samples per pixel of a picture.
     pub spp: u32,
@@ -31,11 +31,11 @@ pub struct Plan {
     pub error: f64,
     /// CPU seconds after which no further picture is begun.
     pub budget: f64,
-    /// Through film and schedule instead of a bare loop.
+    /// Whether film and schedule are used instead of a bare loop.
     pub film: bool,
 }
 
-/// What the pictures of a row say.
+/// Noise and cost of a row, measured on its pictures.
 pub struct Noise {
     /// Gray mean over all pictures.
     pub mean: f64,
@@ -62,7 +62,7 @@ impl Noise {
     }
 }
 
-/// A picture in gray, and the steps it took.
+/// A picture in gray, and its steps.
 struct Picture {
     pixels: Vec<f64>,
     steps: u64,
@@ -149,7 +149,7 @@ fn pixel(index: u32) -> UVec2 {
     UVec2::new(index % SIDE, index / SIDE)
 }
 
-/// By a loop over the pixels that keeps nothing but sums.
+/// Renders by a loop over the pixels that keeps nothing but sums.
 fn bare(frame: PreparedFrame, spp: u32) -> Picture {
     let (pixels, steps): (Vec<f64>, Vec<u64>) = (0..SIDE * SIDE)
         .into_par_iter()
@@ -164,7 +164,7 @@ fn bare(frame: PreparedFrame, spp: u32) -> Picture {
     Picture { pixels, steps: steps.iter().sum() }
 }
 
-/// As the command line renders.
+/// Renders with film and schedule, as the command line does.
 fn with_film(frame: PreparedFrame, spp: u32) -> Picture {
     let job = RenderJob {
         sampler: Arc::new(frame),

@@ -20,7 +20,7 @@ pub fn of(table: Table, scene: &BenchScene) -> Vec<Row> {
 
 /// A row of a table.
 pub struct Row {
-    /// Its name.
+    /// Name of the row.
     pub name: String,
     /// The strategy that is measured.
     pub strategy: Strategy,
@@ -75,7 +75,7 @@ fn toggles(scene: &BenchScene) -> Vec<Row> {
     rows
 }
 
-/// Every mode of the boost at every amount. Without the probes, which emission has no use for.
+/// Every mode of the boost at every amount, without the probes, which do nothing for emission.
 fn modes() -> Vec<Row> {
     let emission = Preset::Emission.strategy();
     let mut rows = vec![row("unboosted", Strategy { majorant_boost: false, ..emission })];

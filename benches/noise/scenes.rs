@@ -13,13 +13,13 @@ use super::which::Table;
 /// A scene of the tables.
 #[derive(Clone, Copy)]
 pub struct BenchScene {
-    /// Its name in the tables and for filters.
+    /// Name of the scene in the tables and for filters.
     pub name: &'static str,
-    /// Its purpose.
+    /// Purpose of the scene.
     pub shows: &'static str,
-    /// The tables it is in.
+    /// The tables that the scene is in.
     pub tables: &'static [Table],
-    /// Whether choosing among lights matters in it.
+    /// Whether choosing among lights matters in the scene.
     pub many_lights: bool,
     /// A circle of pixels, center and radius, that is left out of the variance: where a light is
     /// seen directly, hit or miss drowns what the scene is about.
@@ -29,7 +29,7 @@ pub struct BenchScene {
     set: &'static [&'static str],
 }
 
-/// Where a scene's volumes are looked for.
+/// Folder of a scene's volumes.
 #[derive(Clone, Copy, PartialEq)]
 enum Folder {
     /// The folder of the scene file.
@@ -40,7 +40,7 @@ enum Folder {
 
 const SCENES: &str = "benches/noise/scenes";
 
-/// Every scene.
+/// All scenes of the benchmark.
 #[allow(clippy::too_many_lines, reason = "a table with one row for each scene")]
 pub fn all() -> Vec<BenchScene> {
     let own = |name, shows, file| BenchScene {
@@ -119,7 +119,7 @@ pub fn all() -> Vec<BenchScene> {
 }
 
 impl BenchScene {
-    /// Reads and builds it; `None`, said aloud, where what it needs is absent.
+    /// Reads and builds the scene; `None`, with a message, where its files are absent.
     pub fn build(&self) -> Option<Scene> {
         let root = Path::new(env!("CARGO_MANIFEST_DIR"));
         let file = root.join(SCENES).join(self.file);

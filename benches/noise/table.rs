@@ -10,7 +10,7 @@ use super::{
     scenes::BenchScene,
 };
 
-/// What the figures of all tables mean.
+/// Prints the meaning of the figures of all tables.
 pub fn preamble(plan: &Plan) {
     let Plan { spp, error, budget, film } = plan;
     let how = if *film { "with film and schedule" } else { "by a bare loop over the pixels" };
@@ -48,7 +48,7 @@ const COLUMNS: [(&str, usize); 12] = [
     ("eq time", 10),
 ];
 
-/// Measures every row and prints it.
+/// Measures every row of a table and prints it.
 pub fn print(scene: &BenchScene, built: &Scene, rows: &[Row], plan: &Plan) {
     println!("\n## {}: {}\n", scene.name, scene.shows);
     print_cells(&COLUMNS.map(|(name, _)| name.to_owned()));
@@ -79,7 +79,7 @@ fn cells(row: &Row, noise: &Noise, [variance, efficiency]: [f64; 2]) -> [String;
     ]
 }
 
-/// The first cell to the left, figures to the right.
+/// Prints one line of cells: the first aligned to the left, figures to the right.
 fn print_cells(cells: &[String; COLUMNS.len()]) {
     for (column, (cell, (_, width))) in std::iter::zip(cells, COLUMNS).enumerate() {
         match column {

@@ -1,4 +1,4 @@
-//! The tables that can be asked for.
+//! The tables of the benchmark.
 
 /// A table of the benchmark: a kind of comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -7,7 +7,7 @@ pub enum Table {
     Toggles,
     /// Modes of the majorant boost by their amounts.
     Modes,
-    /// Where rays scatter: by null-collision sampling, by probes, by both.
+    /// Strategies of distance sampling: null-collision sampling, probes, both.
     Distances,
     /// Estimators of transmittance, and trackers.
     Walks,

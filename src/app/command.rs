@@ -66,7 +66,7 @@ pub enum Command {
 
 use Command as C;
 
-/// How a command is named, explained and asked for by the keyboard.
+/// Text, tooltip and shortcut of a command.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spec {
     /// The name in menus, the palette and the help page.
@@ -85,7 +85,7 @@ const CTRL_SHIFT: Modifiers = Modifiers { shift: true, ..CTRL };
 const CTRL_ALT: Modifiers = Modifiers { alt: true, ..CTRL };
 
 impl Command {
-    /// Every command, the toggles one by one, in the order of the help page.
+    /// All commands, the toggles one by one, in the order of the help page.
     pub fn all() -> impl Iterator<Item = Self> {
         Self::iter().flat_map(|command| match command {
             Self::Toggle(_) => Toggle::all().map(Self::Toggle).collect(),
@@ -103,7 +103,7 @@ impl Command {
         self.spec().tooltip
     }
 
-    /// The key that asks for it.
+    /// Key of the command.
     pub fn shortcut(self) -> KeyboardShortcut {
         self.spec().shortcut
     }

@@ -47,7 +47,7 @@ pub struct Diagnostics {
 }
 
 impl Diagnostics {
-    /// Nothing is wanted yet; `pool` will gather cells and look into rays.
+    /// Diagnostics without anything wanted; `pool` will gather cells and compute profiles of rays.
     pub fn new(pool: &BackgroundPool) -> Self {
         let (gathering, inspector) = (Gathering::new(pool), Inspector::new(pool));
         Self { wanted: Wanted::default(), gathering, inspector }
@@ -66,8 +66,8 @@ impl Diagnostics {
         self.inspector.update(ctx, self.wanted.ray, engine);
     }
 
-    /// How the layer that is wanted in place of `pictures` is looked at, once it is there in all of
-    /// them; light as `tone` says.
+    /// Look of the layer that is wanted in place of `pictures`, once it is there in all of them;
+    /// light as `tone` says.
     pub fn look(&self, pictures: &[&Picture], tone: Tone) -> Option<Look> {
         let layer = self.wanted.layer?;
         if pictures.iter().any(|picture| picture.layer.layer != Some(layer)) {
@@ -81,7 +81,7 @@ impl Diagnostics {
         Some(Look::Numbers(Scale::rounded(range)))
     }
 
-    /// The legend of `look`, where its colors are the numbers of the layer.
+    /// Legend of `look`, where its colors are the numbers of the layer.
     pub fn legend(&self, look: Option<Look>) -> Option<Legend> {
         match look? {
             Look::Numbers(scale) => self.wanted.layer.map(|layer| Legend::of_layer(layer, scale)),

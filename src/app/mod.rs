@@ -1,13 +1,13 @@
 //! The window: panels around a picture that refines itself.
 //!
-//! Each room uses those above it in this list only:
+//! Each folder uses those above it in this list only:
 //!
 //! - `command`: everything that can be asked for; `document`: what is edited, and undo.
 //! - `ui`: theme, widgets, sections, notices.
-//! - `jobs`: from edits to pictures, without ever blocking the window; `picture`: the picture and the
-//!   hand on it.
-//! - `compare`: two strategies side by side, errors against a reference; `snapshots`: pictures kept in
-//!   a strip; `sweep`: every strategy tried on the shot, and ranked.
+//! - `jobs`: from edits to pictures, without ever blocking the window.
+//! - `picture`: the picture and the input on it.
+//! - `compare`: two strategies side by side, errors against a reference.
+//! - `snapshots`: stored pictures in a strip; `sweep`: every strategy tried on the shot and ranked.
 //! - `diagnostics`: cells over the picture and maps in its place.
 //! - `panels`: the column of settings.
 //! - `shell`: the window itself.

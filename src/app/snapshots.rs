@@ -1,4 +1,4 @@
-//! Snapshots: pictures kept in a strip with all that is needed to go on from them, on the disk
+//! Snapshots: pictures in a strip with all that is needed to go on from them, stored on the disk
 //! between runs.
 //!
 //! - `strip`: which there are and which is shown; `record`, `thumbnail`: what is shown of each.
@@ -35,18 +35,18 @@ const LIMIT: u64 = 2 << 30;
 pub struct Snapshots {
     /// The snapshots and which one is shown.
     pub strip: Strip,
-    /// Whether the picture is to be kept as soon as it is that of the present scene.
+    /// Whether a snapshot is to be taken as soon as the picture is that of the present scene.
     pub wants_keep: bool,
     store: Option<Store>,
     workers: DiskWorkers,
-    /// How many are being written.
+    /// Number of snapshots being written.
     keeping: usize,
     /// Whether a picture is being read.
     reading: bool,
 }
 
 impl Snapshots {
-    /// Starts to read what is kept in the folder `data`, if there is one.
+    /// Starts to read the snapshots in the folder `data`, if there is one.
     ///
     /// # Errors
     /// When the system refuses to start threads.
@@ -126,7 +126,7 @@ impl Snapshots {
         self.workers.ask(DiskJob::Keep(Box::new(keep)));
     }
 
-    /// How many are being written.
+    /// Number of snapshots being written.
     pub fn keeping(&self) -> usize {
         self.keeping
     }

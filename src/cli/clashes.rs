@@ -9,21 +9,21 @@ use crate::scene::{self, Settings};
 
 /// A file that a command reads or writes.
 pub struct Named<'a> {
-    /// What it is: an option for what is written, words for what is read.
+    /// Name of the file in messages: an option for an output, words for an input.
     what: &'a str,
     path: &'a Path,
-    /// Whether it is a snapshot to go on from, or a picture that can be gone on from: a snapshot may
-    /// give way to its own continuation.
+    /// Whether the file is a snapshot to resume, or a picture that can be resumed: a snapshot may
+    /// be replaced by its own continuation.
     continues: bool,
 }
 
 impl<'a> Named<'a> {
-    /// A file and what it is to the command.
+    /// A file and its name in messages.
     pub fn new(what: &'a str, path: &'a Path) -> Self {
         Self { what, path, continues: false }
     }
 
-    /// A snapshot to go on from, or one that goes on from it.
+    /// A snapshot to resume, or one that continues it.
     pub fn snapshot(what: &'a str, path: &'a Path) -> Self {
         Self { continues: true, ..Self::new(what, path) }
     }

@@ -37,7 +37,7 @@ use errors::Errors;
 use sides::StrategyChoice;
 use table::{CompareTable, SideRow};
 
-/// What is written to the folder of the results.
+/// Files written to the folder of the results.
 const FILES: [&str; 8] = [
     "table.txt",
     "table.json",
@@ -81,11 +81,11 @@ pub struct Arguments {
     output: Option<PathBuf>,
 }
 
-/// One side before it is rendered.
+/// A side before it is rendered.
 struct Prepared {
     settings: Settings,
     sampler: Arc<dyn PixelSampler>,
-    /// CPU seconds of preparing it, of placing probes above all.
+    /// CPU seconds of preparing the side, of placing probes above all.
     setup: f64,
 }
 

@@ -7,7 +7,7 @@ pub fn process_seconds() -> f64 {
     time.tv_sec as f64 + time.tv_nsec as f64 * 1.0e-9
 }
 
-/// Where the system has no such clock: the seconds since the first call, as if one thread had
+/// Seconds since the first call, on systems without a clock of the process: as if one thread had
 /// worked all the time.
 #[cfg(not(unix))]
 pub fn process_seconds() -> f64 {

@@ -1,4 +1,4 @@
-//! How a command ends: its exit code, and the error that kept it from its work.
+//! Ends of commands: the exit code, and the error that prevented the work.
 
 use crate::error::Error;
 
@@ -11,11 +11,11 @@ pub enum Exit {
     Interrupted = 130,
 }
 
-/// An error that kept a command from its work, with the exit code that it leads to.
+/// An error that prevented a command's work, with its exit code.
 pub struct Refusal {
     /// The reason.
     pub error: Error,
-    /// The exit code that goes with it.
+    /// Exit code of the error.
     pub exit: Exit,
 }
 

@@ -1,4 +1,11 @@
 //! The command line: one file a command. `main` parses, runs and reports.
+//!
+//! - `render`, `compare`, `sweep`, `info`, `keys`, `replay`: the commands.
+//! - `scene_source`: the scene that a command works on; `values`: values of options.
+//! - `outputs`, `clashes`, `rescue`: the files written, which replace no input and are never lost.
+//! - `snapshot_header`, `stats`, `speed_up_row`: contents of these files.
+//! - `console`, `interrupt`, `exit`, `failed_path`: messages, Ctrl-C, exit codes.
+//! - [`cpu_time`]: CPU time of this process.
 
 mod clashes;
 mod compare;

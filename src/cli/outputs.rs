@@ -21,7 +21,7 @@ enum Format {
     Npy,
 }
 
-/// One file to write.
+/// A file to write.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Output {
     path: PathBuf,
@@ -50,17 +50,17 @@ impl std::str::FromStr for Output {
 }
 
 impl Output {
-    /// Where it goes.
+    /// Path of the file.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Whether it can be continued.
+    /// Whether the file is a snapshot, which can be resumed.
     pub fn is_snapshot(&self) -> bool {
         self.format == Format::Exr
     }
 
-    /// As the file is told from what the command reads.
+    /// Name and kind of the file, for telling it from what the command reads.
     pub fn named(&self) -> Named<'_> {
         match self.is_snapshot() {
             true => Named::snapshot("-o", &self.path),
@@ -69,8 +69,8 @@ impl Output {
     }
 }
 
-/// Writes every output, to another place where its own fails. One that fails does not keep the others
-/// from being written; the last error is returned, and the others are told.
+/// Writes every output, to another place where its own fails. One that fails does not keep the
+/// others from being written; the last error is returned, and the others are reported.
 pub fn write_all(outputs: &[Output], film: &Film, header: &exr::SnapshotHeader) -> Result<()> {
     let mut pixels = Vec::new();
     if outputs.iter().any(|output| output.format != Format::Exr) {

@@ -104,8 +104,8 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
     finish(arguments, &settings, files, &render, spent)
 }
 
-/// When to stop, after the command line, the scene and the default, in this order. The number of
-/// samples becomes part of the settings, so that the header of a snapshot tells it.
+/// Limits of samples and time, from the command line, the scene and the default, in this order. The
+/// number of samples becomes part of the settings, so that the header of a snapshot holds it.
 fn limits(arguments: &Arguments, settings: &mut Settings) -> Limits {
     let spp = match (arguments.spp, arguments.time, settings.film.spp) {
         (Some(spp), _, _) => spp,
@@ -122,7 +122,7 @@ fn limits(arguments: &Arguments, settings: &mut Settings) -> Limits {
     Limits { spp, seconds: arguments.time }
 }
 
-/// What is left of the limits once everything is set up.
+/// Limits that are left once everything is set up.
 fn limits_left(limits: Limits, start: Instant) -> Limits {
     let Some(all) = limits.seconds else { return limits };
     let spent = start.elapsed().as_secs_f64();

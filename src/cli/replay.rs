@@ -89,12 +89,12 @@ fn describe(vertex: &Vertex) -> String {
     format!("{what} at {}", triple(vertex.position))
 }
 
-/// Every digit counts when a fault is hunted.
+/// Formats three numbers with all digits, each of which counts when a fault is hunted.
 fn triple(value: Vec3A) -> String {
     format!("({}, {}, {})", value.x, value.y, value.z)
 }
 
-/// The contributions of the path to its pixel.
+/// Contributions of the path to its pixel.
 fn summary(sample: &PathSample) -> String {
     let mut text = String::new();
     let rows = [

@@ -1,4 +1,4 @@
-//! Another place for what cannot be written where it should be: nothing that was rendered is lost.
+//! Other places for files that cannot be written where they should be: nothing rendered is lost.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -49,7 +49,7 @@ pub fn told(results: impl IntoIterator<Item = Result<()>>) -> Result<()> {
     last
 }
 
-/// Where it is tried instead, one after the other.
+/// Folders that are tried instead, one after the other.
 fn places() -> Vec<PathBuf> {
     std::env::current_dir().into_iter().chain([std::env::temp_dir()]).collect()
 }

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::render::compare::SpeedUp;
 
-/// How much faster B is than A at the same noise.
+/// Speed-up of B over A at the same noise.
 #[derive(Debug, Serialize)]
 pub struct SpeedUpRow {
     /// A's time over B's.

@@ -1,4 +1,4 @@
-//! What `--stats` writes.
+//! Statistics that `--stats` writes.
 
 use std::io::Write;
 use std::path::Path;
@@ -98,7 +98,7 @@ impl Stats {
         }
     }
 
-    /// Writes them as JSON, to another place where `path` fails.
+    /// Writes the statistics as JSON, to another place where `path` fails.
     pub fn write(&self, path: &Path) -> Result<(), Refusal> {
         let json = serde_json::to_string_pretty(self)
             .map_err(|e| Error::invalid(path.display().to_string(), "", e.to_string()))?;

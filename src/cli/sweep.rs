@@ -31,7 +31,7 @@ use crate::scene::{self, Settings, VolumeCache};
 use crate::transport::Scene;
 use table::SweepTable;
 
-/// What is written to the folder of the results.
+/// Files written to the folder of the results.
 const FILES: [&str; 3] = ["table.txt", "table.json", "chart.png"];
 
 #[derive(Debug, Args)]

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use super::folder::folder_of;
 use super::target::Target;
 
-/// What tells a file, there or not yet, from any other.
+/// Identity of a file, existing or not yet, that tells it from any other.
 #[derive(Clone, Debug)]
 pub(crate) struct Identity {
-    /// The path without `.`, `..` and symbolic links, as far as it is there.
+    /// Path without `.`, `..` and symbolic links, as far as it exists.
     place: PathBuf,
     /// Device and number, which hard links share; none where the system has no such thing.
     node: Option<(u64, u64)>,
@@ -28,13 +28,13 @@ impl Identity {
         is_file.then(|| Self { place: canonical(&place), node: there.as_ref().and_then(node) })
     }
 
-    /// Whether both are one file.
+    /// Whether both are the same file.
     pub(crate) fn is(&self, other: &Self) -> bool {
         self.place == other.place || self.node.is_some() && self.node == other.node
     }
 }
 
-/// The path without `.`, `..` and symbolic links, as far as its folder is there.
+/// The path without `.`, `..` and symbolic links, as far as its folder exists.
 fn canonical(path: &Path) -> PathBuf {
     let in_folder = || Some(folder_of(path).canonicalize().ok()?.join(path.file_name()?));
     path.canonicalize().ok().or_else(in_folder).unwrap_or_else(|| path.to_owned())

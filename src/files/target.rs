@@ -1,4 +1,4 @@
-//! Where writing to a path leads.
+//! Targets of writing: where a path leads.
 
 use std::fs::{File, FileType, OpenOptions};
 use std::io::{self, ErrorKind};
@@ -10,12 +10,12 @@ use crate::error::{Error, Result};
 /// Symbolic links that are followed one after the other, as Linux does.
 const MOST_LINKS: usize = 40;
 
-/// Where a path leads that something is to be written to.
+/// Target that writing to a path leads to.
 #[derive(Debug)]
 pub(crate) enum Target {
     /// A plain file, there or not yet, at the end of all symbolic links.
     File(PathBuf),
-    /// What takes content and cannot be replaced.
+    /// A stream, which takes content and cannot be replaced.
     Stream(Stream),
 }
 
@@ -48,7 +48,7 @@ impl Target {
 }
 
 impl Stream {
-    /// Writes all of `content` into it. A reader that goes before the end wants no more of it.
+    /// Writes all of `content` into the stream. A reader that closes before the end is no error.
     pub(crate) fn take(&self, content: &mut File) -> io::Result<()> {
         let mut stream = match own_stream(&self.0) {
             Some(file) => file?,
@@ -61,9 +61,8 @@ impl Stream {
     }
 }
 
-/// The end of a chain of symbolic links, which need not be there. The names of open files, such as
-/// `/proc/self/fd/1`, look like links and are followed no further: what they lead to may have no
-/// name.
+/// The end of a chain of symbolic links, which need not exist. The names of open files, such as
+/// `/proc/self/fd/1`, resemble links and are followed no further: their targets may have no name.
 fn followed(path: &Path) -> io::Result<PathBuf> {
     let mut place = path.to_owned();
     for _ in 0..MOST_LINKS {
@@ -167,7 +166,7 @@ mod tests {
         assert!(error.contains("socket: it is a disk or a socket"), "{error}");
     }
 
-    /// What standard output leads to may be a plain file, and is not replaced all the same.
+    /// Standard output may lead to a plain file, and is not replaced all the same.
     #[cfg(target_os = "linux")]
     #[test]
     fn open_files_are_streams_by_whichever_name() {

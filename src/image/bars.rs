@@ -1,4 +1,4 @@
-//! Bars on a logarithmic axis, as a PNG: how many times as good things are as one of them.
+//! Bar chart of ratios on a logarithmic axis, as a PNG.
 
 use std::path::Path;
 
@@ -8,34 +8,34 @@ use super::drawing::{Align, Canvas, color};
 use super::log_axis::LogAxis;
 use crate::error::Result;
 
-/// A named number with what is known of it.
+/// A named number of a bar chart with its label.
 pub struct Bar<'a> {
-    /// What it is called.
+    /// Name of the bar, left of it.
     pub name: &'a str,
-    /// The number, above 0, and the ends of the interval that holds it; none where it is not known.
+    /// The number, above 0, and the ends of its confidence interval; `None` where it is not known.
     pub value: Option<(f64, [f64; 2])>,
-    /// What is written at its end.
+    /// Text at the end of the bar.
     pub label: &'a str,
-    /// Whether it stands out.
+    /// Whether the bar is drawn in the color that stands out.
     pub stands_out: bool,
 }
 
 /// Bars to draw, which begin at 1.
 pub struct Bars<'a> {
-    /// A sentence above them.
+    /// Sentence above the bars.
     pub title: &'a str,
-    /// What the numbers are.
+    /// Quantity of the axis, with its unit.
     pub axis: &'a str,
-    /// From top to bottom.
+    /// Bars from top to bottom.
     pub bars: &'a [Bar<'a>],
 }
 
 const WIDTH: u32 = 1000;
 /// Borders of the bars: left, right.
 const FIELD: [i32; 2] = [310, 844];
-/// Where labels end.
+/// Column where labels end, in pixels.
 const LABELS: i32 = 984;
-/// Where the first bar begins.
+/// Row where the first bar begins, in pixels.
 const TOP: i32 = 76;
 /// Height of a bar with the gap below it, and of the bar.
 const ROW: [i32; 2] = [30, 16];
@@ -44,7 +44,7 @@ const BOTTOM: i32 = 40;
 const BAR: [u8; 3] = [92, 120, 158];
 const BAR_OUT: [u8; 3] = [255, 159, 67];
 
-/// Draws `bars` and writes them.
+/// Draws `bars` and writes them as a PNG.
 ///
 /// # Errors
 /// When the system refuses to write.

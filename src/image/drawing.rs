@@ -22,14 +22,14 @@ const LETTERS: f64 = 16.0;
 /// Place of a pixel, from the upper left corner.
 pub(super) type PixelPosition = (i32, i32);
 
-/// Where a text stands with respect to its place, across.
+/// Horizontal alignment of a text to its position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Align {
-    /// It begins there.
+    /// The text begins at its position.
     Left,
-    /// Its middle is there.
+    /// The text is centered on its position.
     Center,
-    /// It ends there.
+    /// The text ends at its position.
     Right,
 }
 
@@ -52,7 +52,7 @@ pub(super) struct Canvas {
 }
 
 impl Canvas {
-    /// An empty one.
+    /// An empty canvas of `size` pixels.
     pub fn new(size: UVec2) -> Self {
         let pixels = size.x as usize * size.y as usize;
         Self { size, codes: color::BACKGROUND.repeat(pixels) }
@@ -71,7 +71,7 @@ impl Canvas {
         Ok(width as i32)
     }
 
-    /// Colors one pixel; off the canvas, none.
+    /// Sets the color of one pixel; does nothing off the canvas.
     pub fn put(&mut self, at: UVec2, color: [u8; 3]) {
         if at.cmplt(self.size).all() {
             let index = 3 * (at.y as usize * self.size.x as usize + at.x as usize);
@@ -79,7 +79,7 @@ impl Canvas {
         }
     }
 
-    /// Fills the rectangle between two corners, both of them in it.
+    /// Fills the box of pixels between two corners, both of them included.
     pub fn fill(&mut self, [first, last]: [PixelPosition; 2], color: [u8; 3]) -> Result<()> {
         // `plotters` leaves the last row and column out.
         let end = (last.0 + 1, last.1 + 1);
@@ -110,7 +110,7 @@ impl Canvas {
         self.draw(&Text::new(text.to_owned(), at, font.pos(Pos::new(across, VPos::Center))))
     }
 
-    /// Writes it as a PNG.
+    /// Writes the canvas as a PNG.
     ///
     /// # Errors
     /// When the system refuses to.

@@ -1,4 +1,4 @@
-//! Pictures as somebody looked at them, with names, a legend, figures and words, as a PNG.
+//! Exported pictures with names, a legend, figures and words, as a PNG.
 
 use std::path::Path;
 
@@ -8,12 +8,12 @@ use super::drawing::{Align, Canvas, color};
 use super::legend::{self, Legend};
 use crate::error::Result;
 
-/// Everything on it, from top to bottom.
+/// Contents of an exported picture, from top to bottom.
 #[derive(Default)]
 pub struct Export<'a> {
     /// Pictures beside each other, of one size.
     pub panes: Vec<Pane>,
-    /// What their colors mean, where they are maps.
+    /// Legend of the colors, where the pictures are maps.
     pub legend: Option<Legend<'a>>,
     /// Sentences.
     pub words: Vec<String>,
@@ -28,18 +28,18 @@ pub struct Pane {
     pub size: UVec2,
     /// 8-bit sRGB, row 0 on top.
     pub codes: Vec<[u8; 3]>,
-    /// What it is called; two names where a divider parts it.
+    /// Name of the picture; two names where a divider parts it.
     pub names: Vec<String>,
-    /// The first column right of a divider.
+    /// First column right of the divider.
     pub divider: Option<u32>,
-    /// Two corners of a rectangle, the second one just outside of it.
+    /// Two corners of a region, the second one just outside of it.
     pub region: Option<[UVec2; 2]>,
 }
 
 /// Figures in rows and columns.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FigureTable {
-    /// What stands above the columns.
+    /// Headings above the columns.
     pub headings: Vec<String>,
     /// The rows, of as many cells.
     pub rows: Vec<Vec<String>>,
@@ -59,10 +59,10 @@ const WIDEST: i32 = 150;
 const CHIP: [u8; 3] = [30, 30, 30];
 /// Around light lines, so that they show on any picture.
 const DARK: [u8; 3] = [19, 19, 19];
-/// Dividers and rectangles.
+/// Color of dividers and of the frame of a region, in sRGB codes.
 const LIGHT: [u8; 3] = [238, 238, 238];
 
-/// Draws `export` and writes it.
+/// Draws `export` and writes it as a PNG.
 ///
 /// # Errors
 /// When the system refuses to write.
@@ -132,7 +132,7 @@ impl Pane {
     }
 }
 
-/// The frame of a rectangle, just outside of it.
+/// Draws the frame of a region, just outside of it.
 fn frame(canvas: &mut Canvas, first: glam::IVec2, end: glam::IVec2) -> Result<()> {
     for (out, color) in [(2, DARK), (1, LIGHT)] {
         let (x0, y0, x1, y1) = (first.x - out, first.y - out, end.x + out - 1, end.y + out - 1);
@@ -153,7 +153,7 @@ fn chip(canvas: &mut Canvas, text: &str, (low, high): (i32, i32), align: Align) 
 }
 
 impl FigureTable {
-    /// Draws it from `top` on down, a column every `step` pixels; where it ends.
+    /// Draws the table from `top` on down, a column every `step` pixels; returns its end.
     fn draw(&self, canvas: &mut Canvas, top: i32, step: i32) -> Result<i32> {
         let mut y = top + LINE / 2;
         for (row, tint) in std::iter::once((&self.headings, color::DIM))

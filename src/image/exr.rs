@@ -20,14 +20,14 @@ use crate::error::{Error, NO_PROGRESS, Progress, Result, report};
 use crate::files;
 use crate::render::film::{Film, Totals};
 
-/// What the first bytes of an EXR say, whoever wrote it.
+/// Header of an EXR file of any program.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Info {
-    /// How many parts it has; the rest is about the first.
+    /// Number of parts; everything else is about the first.
     pub parts: usize,
     /// Width and height.
     pub size: UVec2,
-    /// Names of the channels.
+    /// Names of the channels of the first part.
     pub channels: Vec<String>,
     /// The header, if Flambeau wrote it.
     pub header: Option<SnapshotHeader>,
@@ -70,7 +70,7 @@ pub fn write(path: &Path, film: &Film, header: &SnapshotHeader) -> Result<()> {
     })
 }
 
-/// Reads what `path` says about itself, without its pixels.
+/// Reads the header of the EXR file at `path`, without its pixels.
 ///
 /// # Errors
 /// When it cannot be read or is no EXR.
@@ -111,9 +111,9 @@ fn info(path: &Path, data: &MetaData) -> Result<Info> {
 /// A snapshot read back.
 #[derive(Debug)]
 pub struct Snapshot {
-    /// The film, as it was when it was written.
+    /// The film as it was written.
     pub film: Film,
-    /// What it says about itself.
+    /// Header of the snapshot.
     pub header: SnapshotHeader,
 }
 
@@ -218,9 +218,9 @@ fn read_state(
 struct State<'a> {
     path: &'a Path,
     film: &'a mut Film,
-    /// For every channel of the file the row that it fills, if it is needed to go on.
+    /// For every channel of the file, its row in `rows`; `None` for channels not needed to resume.
     row_of_channel: Vec<Option<usize>>,
-    /// One line of every channel that is needed, the sample counts last.
+    /// One scan line of every channel needed to resume, the sample counts last.
     rows: Vec<Vec<f32>>,
     paths: u64,
 }
@@ -424,7 +424,7 @@ mod tests {
         assert!(error.contains("state.steps.Y") && error.contains("earlier version"), "{error}");
     }
 
-    /// Scripts look for these names; a text named `version` would be lost or refused by readers.
+    /// Scripts read attributes by these names; readers lose or refuse a text named `version`.
     #[test]
     fn attributes_have_plain_names() {
         let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! The color of any EXR, whoever wrote it.
+//! The color of any EXR, of Flambeau or another program.
 
 use std::path::Path;
 
@@ -16,7 +16,7 @@ use crate::error::{Error, Result};
 /// A picture's size and its pixels, row 0 on top.
 pub type Pixels = (UVec2, Vec<[f32; 4]>);
 
-/// More pixels than this are taken for damage.
+/// Largest number of pixels of a picture; a file that claims more is damaged.
 const MAX_PIXELS: u64 = 1 << 28;
 
 /// Reads R, G and B of the first layer that has all of them, as floats with an opaque alpha: the

@@ -1,5 +1,4 @@
-//! What a snapshot says about itself: the attributes of its file, in one list for writing and
-//! reading.
+//! Header of a snapshot: the attributes of its EXR file, in one list for writing and reading.
 //!
 //! Names are plain where scenes' documentation promises them to other programs, and begin with
 //! `flambeau.` where they only serve to go on. The version stands in `software` as
@@ -16,7 +15,7 @@ use crate::files::Fingerprint;
 use crate::render::estimate::samples_per_pixel;
 use crate::render::film::{Film, Totals};
 
-/// What a snapshot says about itself.
+/// Header of a snapshot: how its picture was rendered.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SnapshotHeader {
     /// The whole setting as a scene file, with absolute file names.
@@ -25,10 +24,10 @@ pub struct SnapshotHeader {
     pub strategy: String,
     /// The seed of all samples.
     pub seed: u64,
-    /// The version of Flambeau that wrote it.
+    /// Version of Flambeau that wrote the snapshot.
     pub version: String,
-    /// The version of the paths in it, [`PATH_VERSION`](crate::transport::PATH_VERSION) of the
-    /// Flambeau that wrote it.
+    /// Version of the paths of the snapshot, [`PATH_VERSION`](crate::transport::PATH_VERSION) of
+    /// the Flambeau that wrote it.
     pub path_version: u64,
     /// Wall-clock seconds spent on the picture, over all its sessions.
     pub wall_seconds: f64,
@@ -36,7 +35,7 @@ pub struct SnapshotHeader {
     pub cpu_seconds_setup: f64,
     /// CPU seconds spent on rendering.
     pub cpu_seconds_render: f64,
-    /// The files that the scene names, as they were when it was rendered; empty if unknown.
+    /// Files that the scene names, as they were when the snapshot was rendered; empty if unknown.
     pub files: Vec<Fingerprint>,
 }
 
@@ -57,7 +56,7 @@ const TRACKING_STEPS: &str = "flambeau.tracking_steps";
 const NON_FINITE: &str = "flambeau.non_finite_samples";
 const GUARD_HITS: &str = "flambeau.guard_hits";
 
-/// The path version of snapshots that do not tell it, which are those of Flambeau 0.1.0.
+/// Path version of snapshots that state none, which are those of Flambeau 0.1.0.
 const FIRST_PATH_VERSION: u64 = 1;
 
 /// The attributes of a snapshot of `film`.
@@ -106,7 +105,7 @@ pub struct Attributes<'a> {
 }
 
 impl<'a> Attributes<'a> {
-    /// Those of the file at `path`.
+    /// Attributes of the file at `path`.
     pub fn new(path: &'a Path, all: &'a LayerAttributes) -> Self {
         Self { path, all }
     }
@@ -116,7 +115,7 @@ impl<'a> Attributes<'a> {
         self.get(SCENE).is_some() && self.get(PATHS).is_some()
     }
 
-    /// What the file says about itself.
+    /// Reads the header of the snapshot from the attributes.
     pub fn header(&self) -> Result<SnapshotHeader> {
         let cpu_seconds_setup = self.number(CPU_SECONDS_SETUP)?;
         Ok(SnapshotHeader {

@@ -1,4 +1,4 @@
-//! Which channels a snapshot has, in one list for writing and reading.
+//! Channels of a snapshot, in one list for writing and reading.
 
 use glam::UVec2;
 
@@ -42,7 +42,7 @@ const VIEW: [&str; 22] = [
 /// The channel of a pixel's own sample count.
 pub const SAMPLES: &str = "samples";
 
-/// All channel names, those for looking at first.
+/// All channel names: first those for viewing, then those needed to resume.
 pub fn channel_names() -> Vec<String> {
     VIEW.iter().map(|name| (*name).to_owned()).chain(state_names()).collect()
 }

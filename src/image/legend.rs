@@ -1,4 +1,4 @@
-//! What the colors of a map mean, drawn below it.
+//! Legend of a map, drawn below it: the ramp with its numbers.
 
 use super::drawing::{Align, Canvas, color};
 use crate::error::Result;
@@ -6,25 +6,25 @@ use glam::UVec2;
 
 /// Height of a legend in pixels.
 pub const HEIGHT: u32 = 112;
-/// Space around what is in it.
+/// Margin around the legend in pixels.
 const MARGIN: i32 = 16;
 /// Height of the bar of colors.
 const BAR: i32 = 14;
 
 /// A bar of colors with its numbers.
 pub struct Legend<'a> {
-    /// What the numbers are.
+    /// Quantity of the map, with its unit.
     pub title: &'a str,
-    /// What else is to be said about them.
+    /// Further remark on the numbers.
     pub note: &'a str,
     /// The 8-bit sRGB color at a place in 0..=1 of the bar.
     pub color: &'a dyn Fn(f32) -> [u8; 3],
-    /// The numbers at its start, in its middle and at its end.
+    /// Numbers at the start, in the middle and at the end of the bar.
     pub ends: [String; 3],
 }
 
 impl Legend<'_> {
-    /// Draws it over the width of the canvas, from `top` on down.
+    /// Draws the legend over the width of the canvas, from `top` on down.
     pub(super) fn draw(&self, canvas: &mut Canvas, top: i32) -> Result<()> {
         let (left, right) = (MARGIN, canvas.size().x as i32 - MARGIN);
         canvas.text((left, top + 18), Align::Left, color::TEXT, self.title)?;

@@ -2,19 +2,19 @@
 
 /// The least that an axis spans, as a factor.
 const LEAST_SPAN: f64 = 3.0;
-/// What is left free around the values, as a factor.
+/// Margin on both sides of the values, as a factor.
 const MARGIN: f64 = 1.15;
 
 /// A logarithmic axis.
 pub(super) struct LogAxis {
     low: f64,
     high: f64,
-    /// Where its ends are.
+    /// Pixels of the two ends.
     pixels: [i32; 2],
 }
 
 impl LogAxis {
-    /// Covers `values`, all of them positive, between two places.
+    /// An axis over `values`, all of them positive, between two pixels.
     pub fn over(values: impl Iterator<Item = f64>, pixels: [i32; 2]) -> Self {
         let (low, high) =
             values.fold((f64::INFINITY, 0.0_f64), |(low, high), x| (low.min(x), high.max(x)));
@@ -29,7 +29,7 @@ impl LogAxis {
         (start + place * (end - start)).round() as i32
     }
 
-    /// The numbers to write along it: 1, 2 and 5 times powers of ten, or the powers alone where
+    /// Numbers to write along the axis: 1, 2 and 5 times powers of ten, or the powers alone where
     /// those would be too many.
     pub fn ticks(&self) -> Vec<f64> {
         let decades = (self.high / self.low).log10();

@@ -1,4 +1,4 @@
-//! A number a pixel as a picture in the colors of a ramp, with its legend below, as a PNG.
+//! A number per pixel as a picture in the colors of a ramp, with its legend below, as a PNG.
 
 use std::path::Path;
 
@@ -9,7 +9,7 @@ use super::legend::{self, Legend};
 use super::ramp::{self, Scale};
 use crate::error::Result;
 
-/// How numbers become colors.
+/// Color map of the numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Colors {
     /// Positive numbers on a logarithmic scale; zero and less are black.
@@ -20,17 +20,17 @@ pub enum Colors {
 
 /// A map to draw.
 pub struct Map<'a> {
-    /// What the numbers are.
+    /// Quantity of the map, with its unit.
     pub title: &'a str,
-    /// What else is to be said about them.
+    /// Further remark on the numbers.
     pub note: &'a str,
     /// Width and height in pixels.
     pub size: UVec2,
     /// The numbers, row 0 on top.
     pub values: &'a [f32],
-    /// Their colors.
+    /// Color map of the numbers.
     pub colors: Colors,
-    /// How a number is written in the legend.
+    /// Formats a number for the legend.
     pub label: fn(f64) -> String,
 }
 
@@ -56,7 +56,7 @@ impl Colors {
     }
 }
 
-/// Draws `map` and writes it.
+/// Draws `map` and writes it as a PNG.
 ///
 /// # Errors
 /// When the system refuses to write.

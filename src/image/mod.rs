@@ -1,10 +1,13 @@
 //! Pictures on disk and their way to a screen.
 //!
-//! [`exr`] keeps everything and can be continued; [`npy`] is the beauty for scripts; [`png`] is what
-//! the screen shows, through the curves of [`tone`]. [`ramp`] turns numbers into colors, [`map`] a
-//! number a pixel into a picture with its [`legend`], [`plot`] numbers over time into curves, [`bars`]
-//! some that are compared into a chart; [`export`] is a view with its figures below.
-//! [`metrics`] tell how far a picture is from a [`reference`](mod@reference).
+//! - [`exr`]: snapshots, which hold everything and can be continued.
+//! - `exr_header`, `exr_layout`: their attributes and channels; `exr_color`: the color of any EXR.
+//! - [`npy`], `npy_header`: the beauty for scripts, as a numpy array.
+//! - [`png`]: the picture as the screen shows it, through the curves of [`tone`].
+//! - [`ramp`]: colors of numbers; [`map`]: a number per pixel as a picture with its [`legend`].
+//! - [`plot`]: curves over time; [`bars`]: a bar chart; `log_axis`, `drawing`: axes and canvas.
+//! - [`export`]: a view with its figures below.
+//! - [`metrics`]: errors of a picture against a [`reference`](mod@reference).
 
 pub mod bars;
 mod drawing;

@@ -72,7 +72,7 @@ pub fn read(path: &Path) -> Result<(UVec2, Vec<[f32; 4]>)> {
     Ok((size, decode(data).chunks_exact(channels).map(pixel).collect()))
 }
 
-/// The size and the number of channels, if it is the shape of a picture.
+/// Size and number of channels, if the array has the shape of a picture.
 fn extent(header: &NpyHeader) -> Option<(UVec2, usize)> {
     let (height, width, channels) = match header.shape[..] {
         [height, width] => (height, width, 1),

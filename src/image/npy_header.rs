@@ -4,7 +4,7 @@
 //! Read without a package: those there are take any Python literal and go as deep into brackets as
 //! a broken file asks for. Here nothing nests, and nothing is allocated by what a header claims.
 
-/// What a header says.
+/// Header of a numpy array: its element type, order and shape.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NpyHeader {
     /// The type of a number, such as `<f4`.
@@ -15,7 +15,7 @@ pub struct NpyHeader {
     pub shape: Vec<usize>,
 }
 
-/// What is wrong with a header: the entry, which may be empty, and why.
+/// Fault of a header: the entry, which may be empty, and the reason.
 pub type Flaw = (&'static str, &'static str);
 
 /// The first bytes of every numpy file.

@@ -10,17 +10,17 @@ use crate::error::Result;
 
 /// A named curve.
 pub struct PlotCurve<'a> {
-    /// What the legend calls it.
+    /// Name of the curve in the legend.
     pub name: &'a str,
-    /// Its points from left to right, both coordinates positive.
+    /// Points from left to right, both coordinates positive.
     pub points: &'a [[f64; 2]],
 }
 
 /// An axis.
 pub struct PlotAxis<'a> {
-    /// What it counts, with its unit.
+    /// Quantity of the axis, with its unit.
     pub name: &'a str,
-    /// How a number is written along it.
+    /// Formats a number along the axis.
     pub label: fn(f64) -> String,
 }
 
@@ -30,7 +30,7 @@ pub struct Plot<'a> {
     pub title: &'a str,
     /// Across and up.
     pub axes: [PlotAxis<'a>; 2],
-    /// At most as many as there are colors; more begin again with the first.
+    /// Curves; colors repeat where there are more curves than colors.
     pub curves: &'a [PlotCurve<'a>],
 }
 
@@ -39,7 +39,7 @@ const SIZE: UVec2 = UVec2::new(900, 560);
 const FIELD: [i32; 4] = [90, 74, 876, 496];
 const COLORS: [[u8; 3]; 2] = [[94, 169, 255], [255, 159, 67]];
 
-/// Draws `plot` and writes it.
+/// Draws `plot` and writes it as a PNG.
 ///
 /// # Errors
 /// When the system refuses to write.

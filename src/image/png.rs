@@ -1,4 +1,4 @@
-//! What the screen shows, as a PNG.
+//! Writing the displayed picture as a PNG.
 
 use std::io::{BufWriter, Write};
 use std::path::Path;

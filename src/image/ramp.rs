@@ -57,7 +57,7 @@ pub fn signed_color(place: f32) -> [u8; 3] {
     srgb(signed(place))
 }
 
-/// The same color in linear light.
+/// Diverging color of a signed `place`, in linear light.
 pub fn signed(place: f32) -> [f32; 3] {
     let strength = place.abs().min(1.0);
     let hue = if place < 0.0 { 250.0 } else { 60.0 };
@@ -71,9 +71,9 @@ fn srgb(linear: [f32; 3]) -> [u8; 3] {
 /// A logarithmic scale between two positive numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scale {
-    /// What the ramp starts with; less looks the same.
+    /// Number at the low end of the ramp; smaller ones get the same color.
     pub low: f32,
-    /// What it ends with.
+    /// Number at the high end of the ramp; larger ones get the same color.
     pub high: f32,
 }
 
@@ -81,13 +81,13 @@ pub struct Scale {
 const MOST_SPAN: f32 = 1e4;
 
 impl Scale {
-    /// Between the smallest and the largest of some positive numbers.
+    /// A scale between the smallest and the largest of some positive numbers.
     pub fn exact([low, high]: [f32; 2]) -> Self {
         Self { low: low.max(high / MOST_SPAN), high }
     }
 
-    /// The same, its ends moved outwards to 1, 2 or 5 times a power of ten, so that it rests while
-    /// the numbers still change a little.
+    /// A scale as of [`Self::exact`], its ends moved outwards to 1, 2 or 5 times a power of ten, so
+    /// that it rests while the numbers still change a little.
     pub fn rounded(range: [f32; 2]) -> Self {
         let Self { low, high } = Self::exact(range);
         let round = |value: f32, up: bool| {
@@ -108,7 +108,7 @@ impl Scale {
         Self::rounded([value, value]).high
     }
 
-    /// Where a number lies between the ends, in 0..=1; 1 where they coincide.
+    /// Position of a number between the ends, in 0..=1; 1 where they coincide.
     pub fn place(&self, value: f32) -> f32 {
         let span = (self.high / self.low).ln();
         if span > 0.0 { ((value / self.low).ln() / span).clamp(0.0, 1.0) } else { 1.0 }

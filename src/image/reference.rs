@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 /// The first bytes of every EXR.
 const EXR_MAGIC: &[u8] = &[0x76, 0x2f, 0x31, 0x01];
 
-/// A picture that others are compared with; all of it is finite.
+/// A reference: a picture that others are compared with, all of it finite.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reference {
     name: String,
@@ -80,7 +80,7 @@ impl Reference {
         &self.pixels
     }
 
-    /// Checks that pictures of `size` can be compared with it.
+    /// Checks that pictures of `size` can be compared with the reference.
     ///
     /// # Errors
     /// When it is of another size; names both.

@@ -1,5 +1,5 @@
-//! From linear light to the screen: white balance, exposure, curve, sRGB. The window's shader does
-//! the same.
+//! Tone mapping from linear light to the screen: white balance, exposure, curve, sRGB. The window's
+//! shader does the same.
 
 mod curve;
 mod exposure;
@@ -13,10 +13,10 @@ use crate::math::{Rgb, luminance};
 pub use curve::ToneCurve;
 pub use exposure::auto_exposure;
 
-/// What of a color is shown.
+/// Channel of a color that is shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Channel {
-    /// All of it.
+    /// The whole color.
     #[default]
     Color,
     /// Red, as gray.
@@ -27,16 +27,16 @@ pub enum Channel {
     Blue,
     /// Luminance, as gray.
     Luminance,
-    /// How many stops it is from middle gray, as a color of [`false_color::COLORS`].
+    /// Exposure in stops from middle gray, as a color of [`false_color::COLORS`].
     FalseColor,
 }
 
 impl Channel {
-    /// All of them, in the order of menus.
+    /// All channels, in the order of menus.
     pub const ALL: [Self; 6] =
         [Self::Color, Self::Red, Self::Green, Self::Blue, Self::Luminance, Self::FalseColor];
 
-    /// What menus call it.
+    /// Name of the channel in menus.
     pub fn name(self) -> &'static str {
         match self {
             Self::Color => "Color",
@@ -60,7 +60,7 @@ impl Channel {
     }
 }
 
-/// How a picture is brought to the screen.
+/// Tone mapping of a picture for the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tone {
     /// Stops of exposure: the picture is multiplied by 2 to this power.
@@ -68,12 +68,12 @@ pub struct Tone {
     /// Color temperature of the light that is shown white, in kelvin; without a tint
     /// [`white::NEUTRAL`] changes nothing.
     pub white: f32,
-    /// How much greener than a black body that light is, from -150 to 150; less than 0: more
+    /// Tint of the white point from -150 to 150: above 0 greener than a black body, below 0 more
     /// magenta.
     pub tint: f32,
     /// The curve after exposure.
     pub curve: ToneCurve,
-    /// What of the color is shown.
+    /// Channel of the color that is shown.
     pub channel: Channel,
 }
 
@@ -90,12 +90,12 @@ impl Default for Tone {
 }
 
 impl Tone {
-    /// From linear colors to white-balanced, exposed ones.
+    /// Matrix from linear colors to white-balanced, exposed ones.
     pub fn exposed_from_linear(self) -> Mat3A {
         white::balance(self.white, self.tint) * self.exposure.exp2()
     }
 
-    /// What turns linear colors into codes.
+    /// Encoder from linear colors to sRGB codes.
     pub fn encoder(self) -> Encoder {
         Encoder { tone: self, exposed_from_linear: self.exposed_from_linear() }
     }

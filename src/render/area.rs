@@ -1,11 +1,11 @@
-//! Rectangles of pixels.
+//! Rectangular regions of pixels.
 
 use glam::UVec2;
 
-/// A rectangle of pixels.
+/// A rectangular region of pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Area {
-    /// Its first pixel, in the upper left corner.
+    /// First pixel, in the upper left corner.
     pub first: UVec2,
     /// Width and height in pixels.
     pub size: UVec2,
@@ -17,12 +17,12 @@ const BLOCKS_ACROSS: u32 = 8;
 const SMALLEST_BLOCK: u32 = 16;
 
 impl Area {
-    /// A whole film of that size.
+    /// The region of a whole film of size `film`.
     pub fn of(size: UVec2) -> Self {
         Self { first: UVec2::ZERO, size }
     }
 
-    /// What of it is on a film of that size.
+    /// The part of the region that lies on a film of size `film`.
     #[must_use]
     pub fn within(&self, film: UVec2) -> Self {
         let first = self.first.min(film);
@@ -30,7 +30,7 @@ impl Area {
         Self { first, size: end - first }
     }
 
-    /// Whether a pixel is one of its.
+    /// Whether a pixel lies in the region.
     pub fn contains(&self, pixel: UVec2) -> bool {
         pixel.cmpge(self.first).all() && (pixel - self.first).cmplt(self.size).all()
     }
@@ -40,8 +40,8 @@ impl Area {
         u64::from(self.size.x) * u64::from(self.size.y)
     }
 
-    /// The square blocks that it falls into, line by line, those at its far borders cut: 8 along
-    /// the longer side, fewer where that would leave them less than 16 pixels wide.
+    /// Square blocks that the region is divided into, line by line, those at its far borders cut: 8
+    /// along the longer side, fewer where that would leave them less than 16 pixels wide.
     pub(crate) fn blocks(&self) -> Vec<Self> {
         let side = self.size.max_element().div_ceil(BLOCKS_ACROSS).max(SMALLEST_BLOCK);
         let counts = UVec2::new(self.size.x.div_ceil(side), self.size.y.div_ceil(side));
@@ -53,7 +53,7 @@ impl Area {
         numbers.map(block).collect()
     }
 
-    /// Its pixels, line by line.
+    /// Pixels of the region, line by line.
     pub(crate) fn iter(&self) -> impl Iterator<Item = UVec2> + use<> {
         let Self { first, size } = *self;
         (0..size.y).flat_map(move |y| (0..size.x).map(move |x| first + UVec2::new(x, y)))

@@ -7,7 +7,7 @@ use super::film::{Film, Sums};
 use crate::math::ACCUMULATORS;
 use crate::math::two_float::{TwoFloat, values};
 
-/// What the samples of one pixel say.
+/// Estimates from the samples of one pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct PixelEstimate<'a> {
     sums: &'a Sums,
@@ -100,11 +100,13 @@ impl<'a> PixelEstimate<'a> {
         Some(of_k2 / (count * count))
     }
 
+    /// Variance of the mean of a channel.
+    ///
     /// With K accumulators of n_k samples, means m_k, shares w_k = n_k / Σ n_j and m = Σ w_k m_k,
-    /// the variance of m is Σ w_k² Var(m_k). It is estimated by Σ a_k (m_k − m)² / (1 + Σ a_k)
-    /// with a_k = w_k² / (1 − 2 w_k): as E (m_k − m)² = (1 − 2 w_k) Var(m_k) + Var(m), this is
-    /// unbiased whatever the variances of the m_k, which need not fall as 1 / n_k. For equal
-    /// shares it is the textbook's Σ (m_k − m)² / (K (K − 1)).
+    /// the variance of m is Σ w_k² Var(m_k). It is estimated by Σ a_k (m_k − m)² / (1 + Σ a_k) with
+    /// a_k = w_k² / (1 − 2 w_k): as E (m_k − m)² = (1 − 2 w_k) Var(m_k) + Var(m), this is unbiased
+    /// whatever the variances of the m_k, which need not fall as 1 / n_k. For equal shares it is
+    /// the textbook's Σ (m_k − m)² / (K (K − 1)).
     fn variance_of(&self, channel: impl Fn([f64; 3]) -> f64) -> Option<f64> {
         let filled = self.filled();
         if filled < 2 {
@@ -221,7 +223,7 @@ pub fn samples_per_pixel(film: &Film) -> f64 {
     film.totals.paths as f64 / (f64::from(film.size().x) * f64::from(film.size().y))
 }
 
-/// What the figures of a film are formed from, for one line of it. Lines are summed in order, so
+/// Sums over one line of a film from which its figures are formed. Lines are summed in order, so
 /// that the figures do not depend on the number of threads.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct LineStats {

@@ -1,4 +1,4 @@
-//! What is kept of every pixel while samples come in.
+//! Film: per-pixel sums of the samples.
 //!
 //! Pixels are stored tile by tile, so that a run of rows is one slice that threads can share out.
 //! A pixel's sums mean nothing until it has a sample, which makes starting over as cheap as
@@ -40,15 +40,15 @@ pub struct Sums {
     pub background: [TwoFloat; 3],
     /// Light after one scatter or reflection.
     pub direct: [TwoFloat; 3],
-    /// Light after more than one.
+    /// Light after more than one scatter or reflection.
     pub indirect: [TwoFloat; 3],
-    /// One minus the transmittance to the background.
+    /// Alpha: one minus the transmittance to the background.
     pub alpha: TwoFloat,
     /// Distances of the first events or surfaces.
     pub depth: TwoFloat,
     /// Tentative collisions of all walks, those of failed samples included.
     pub steps: TwoFloat,
-    /// How many samples brought a distance.
+    /// Number of samples with a distance.
     pub depth_count: u32,
 }
 
@@ -209,8 +209,8 @@ impl Film {
     }
 }
 
-/// Where the `row`-th row of tiles (16 stored pixels) lies: its first pixel and how many of its
-/// pixels are on the film; none below the last line.
+/// The `row`-th row of tiles (16 stored pixels): its first pixel and the number of its pixels on
+/// the film; `None` below the last line.
 pub(crate) fn row_pixels(size: UVec2, tiles: UVec2, row: usize) -> (UVec2, u32) {
     let (tile, line) = (row / TILE as usize, (row % TILE as usize) as u32);
     let tile = UVec2::new((tile % tiles.x as usize) as u32, (tile / tiles.x as usize) as u32);

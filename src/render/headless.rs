@@ -12,32 +12,32 @@ use super::schedule::Limits;
 use crate::error::{Error, Result};
 use crate::transport::PixelSampler;
 
-/// What to render and for how long.
+/// A render without a window: its sampler and its limits.
 pub struct RenderJob {
-    /// What to sample.
+    /// Sampler of the pixels.
     pub sampler: Arc<dyn PixelSampler>,
     /// Width and height in pixels.
     pub size: UVec2,
-    /// When to stop; whatever the time, not before every pixel has a sample. With neither limit
-    /// only the interrupt ends the render.
+    /// Limits of samples and time; whatever the time, the render does not stop before every pixel
+    /// has a sample. With neither limit only the interrupt ends it.
     pub limits: Limits,
     /// A film to go on from.
     pub resume: Option<Film>,
-    /// Number of threads; none: one a core.
+    /// Number of threads; `None`: one per core.
     pub threads: Option<usize>,
 }
 
-/// What a render came to.
+/// Result of a render without a window.
 pub struct Headless {
     /// The film, consistent however the render ended.
     pub film: Film,
-    /// The threads that rendered it.
+    /// Threads that rendered the film.
     pub pool: Pool,
     /// Seconds of rendering.
     pub seconds: f64,
-    /// Whether the interrupt ended it.
+    /// Whether the interrupt ended the render.
     pub interrupted: bool,
-    /// The sample that ended it.
+    /// Failure of the sample that ended the render.
     pub failure: Option<Failure>,
 }
 

@@ -1,4 +1,4 @@
-//! Layers of a picture: parts of its light, depth, and what it cost, one number or color a pixel.
+//! Layers of a picture: parts of its light, depth, and cost, one number or color per pixel.
 
 use glam::UVec2;
 use rayon::prelude::*;
@@ -7,14 +7,14 @@ use super::coarse::shown_pixel;
 use super::estimate::PixelEstimate;
 use super::film::Film;
 
-/// One thing that a film knows of each pixel beside its light.
+/// A layer (AOV) of the film beside the beauty pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Layer {
     /// Emission of volumes that the camera sees directly, radiance.
     Emission,
     /// Light after one scattering event or reflection, radiance.
     Direct,
-    /// Light after more than one, radiance.
+    /// Light after more than one scattering event or reflection, radiance.
     Indirect,
     /// Environment and lights that the camera sees directly, radiance.
     Background,
@@ -29,7 +29,7 @@ pub enum Layer {
 }
 
 impl Layer {
-    /// All of them, in the order of menus.
+    /// All layers, in the order of menus.
     pub const ALL: [Self; 8] = [
         Self::Emission,
         Self::Direct,
@@ -41,12 +41,12 @@ impl Layer {
         Self::Steps,
     ];
 
-    /// Whether it is light, shown as a picture is; else it is a number.
+    /// Whether the layer is light, shown as a picture is; else it is a number.
     pub fn is_light(self) -> bool {
         matches!(self, Self::Emission | Self::Direct | Self::Indirect | Self::Background)
     }
 
-    /// Its name in menus.
+    /// Name of the layer in menus.
     pub fn name(self) -> &'static str {
         match self {
             Self::Emission => "Emission",
@@ -83,11 +83,11 @@ impl Layer {
 /// A layer of a picture, row 0 on top; a pixel without samples shows its block.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LayerMap {
-    /// Which one, if any.
+    /// The layer, if any is shown.
     pub layer: Option<Layer>,
     /// The pixels of a layer of light, as linear RGB and 1.
     pub light: Vec<[f32; 4]>,
-    /// The numbers of any other layer, 0 where there is none.
+    /// Numbers of a layer that is not light, 0 where there is none.
     pub numbers: Vec<f32>,
     /// Smallest and largest number other than zero, if there are any.
     pub range: Option<[f32; 2]>,

@@ -1,14 +1,17 @@
-//! Progressive rendering: what a film keeps, what to sample next, and who does it.
+//! Progressive rendering: the film, the order of samples, and the threads that take them.
 //!
-//! - [`film`]: per-pixel sums in independent accumulators, kept so that a render can be continued
-//!   bit for bit; [`estimate`] reads means and variances from them, [`publish`] whole pictures.
-//!   An [`area`] is a rectangle of its pixels.
+//! - [`film`]: per-pixel sums in independent accumulators, stored so that a render can be continued
+//!   bit for bit; [`area`]: rectangular regions of its pixels; [`layers`]: its layers (AOVs).
+//! - [`estimate`]: means and variances of a film; [`publish`]: whole pictures read from it.
 //! - [`coarse`]: blocks that one pixel stands for while the others have no samples.
-//! - [`schedule`]: pure logic; from what is done and what it cost to the next piece of work.
-//! - [`pool`] does one piece of work on all threads, [`progressive`] repeats that. The window's
-//!   [`session`] and the command line's [`headless`] both drive that loop; where several
-//!   share the threads, [`turns`] says whose turn it is; [`side_by_side`] renders two so, and
-//!   [`compare`] holds their films against each other; [`sweep`] does it with all strategies.
+//! - [`schedule`]: pure logic from what is done and what it cost to the next piece of work.
+//! - [`pool`]: the threads, which do one piece of work; `thread_time`: their CPU time.
+//! - [`progressive`]: one render, piece by piece; driven by [`session`] in the window and by
+//!   [`headless`] on the command line.
+//! - [`turns`]: which of several renders gets the next time slice; [`time_slice`]: one of them with
+//!   its share of the work.
+//! - [`side_by_side`]: two renders at equal shares; [`compare`]: their speed-up and agreement;
+//!   [`sweep`]: all toggles of the strategy, alone and left out.
 
 pub mod area;
 pub mod coarse;

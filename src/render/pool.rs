@@ -1,4 +1,4 @@
-//! The threads that sample, and the one loop that does it.
+//! The pool of sampling threads, and the one loop that samples.
 
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -14,13 +14,13 @@ use super::thread_time::thread_seconds;
 use crate::error::{Error, Result};
 use crate::transport::{PixelSampler, Prepared, SampleNumber};
 
-/// How the threads stand against the rest of the machine.
+/// Priority of the threads against other programs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Priority {
-    /// As any other program.
+    /// Normal priority, that of any other program.
     Normal,
-    /// Behind others, so that a window stays fluent while all cores sample. On systems other than
-    /// Linux the same as [`Priority::Normal`].
+    /// Lower priority than others, so that a window stays fluent while all cores sample. On systems
+    /// other than Linux the same as [`Priority::Normal`].
     Background,
 }
 
@@ -61,14 +61,14 @@ impl std::fmt::Display for Failure {
 /// The outcome of a piece of work.
 #[derive(Debug)]
 pub struct WorkOutcome {
-    /// Counts of what was done, all of it or not.
+    /// Counts of the work done, complete or not.
     pub totals: Totals,
-    /// CPU time that the threads spent on it, in seconds; what threads of a sampler's own spend is
-    /// not among it.
+    /// CPU time that the threads spent on the work, in seconds, without that of a sampler's own
+    /// threads.
     pub cpu_seconds: f64,
     /// Whether the whole piece was done.
     pub complete: bool,
-    /// The first failure that a thread reported.
+    /// First failure that a thread reported.
     pub failure: Option<Failure>,
 }
 
@@ -104,7 +104,7 @@ impl Pool {
     /// Runs the pilot pass of `sampler` on these threads; `None` if `stop` said so earlier.
     ///
     /// # Errors
-    /// What kept it from doing so.
+    /// The failure of a thread.
     pub fn prepare(
         &self,
         sampler: &dyn PixelSampler,
@@ -154,7 +154,7 @@ impl Pool {
     }
 }
 
-/// How many rows of a tile a thread takes at once: a path or more at that stride.
+/// Number of rows of a tile that a thread takes at once: enough for a path or more at that stride.
 fn rows_at_once(stride: u32) -> usize {
     (stride * stride / TILE).max(1) as usize
 }
@@ -196,7 +196,7 @@ impl RowContext<'_> {
         width > 0 && representative(first, self.work.stride, self.size).y == first.y
     }
 
-    /// The sample of that index, if it may be taken.
+    /// The sample with that index, if it may be taken.
     fn number(&self, index: u32) -> Option<SampleNumber<'_>> {
         match (index, self.prepared) {
             (0, _) => Some(SampleNumber::First),
@@ -311,7 +311,7 @@ mod tests {
         assert_eq!(rendered(4), one);
     }
 
-    /// Much more work costs more, on whichever threads it is done.
+    /// More work costs more CPU time, on whichever threads it is done.
     #[test]
     fn the_cpu_time_is_that_of_the_work() {
         let seconds = |cost| {

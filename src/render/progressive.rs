@@ -13,10 +13,10 @@ use super::publish::{
 use super::schedule::{Limits, Next, Schedule};
 use crate::transport::{PixelSampler, Prepared};
 
-/// One render under way.
+/// A progressive render under way.
 pub struct ProgressiveRender {
     sampler: Arc<dyn PixelSampler>,
-    /// What its pilot pass found, once that has run.
+    /// Result of the pilot pass, once that has run.
     prepared: Option<Prepared>,
     film: Film,
     schedule: Schedule,
@@ -28,14 +28,14 @@ pub struct ProgressiveRender {
     cpu_seconds: f64,
 }
 
-/// What a step came to.
+/// Result of one step of a render.
 #[derive(Debug)]
 pub enum RenderStep {
     /// A piece of work was done.
     Worked,
-    /// It was broken off; the next step takes it up again.
+    /// The work was interrupted; the next step takes it up again.
     Interrupted,
-    /// Nothing to do while paused.
+    /// The render is paused, so there is nothing to do.
     Paused,
     /// The limit is reached.
     Done,
@@ -92,12 +92,12 @@ impl ProgressiveRender {
         self.go_on_with(sampler);
     }
 
-    /// Counts CPU time in, in seconds, that the samples it began with took.
+    /// Adds the CPU time, in seconds, of the samples that the render began with.
     pub fn count_in(&mut self, cpu_seconds: f64) {
         self.cpu_seconds += cpu_seconds;
     }
 
-    /// Goes on with another sampler of the same picture.
+    /// Continues with another sampler of the same picture.
     pub fn go_on_with(&mut self, sampler: Arc<dyn PixelSampler>) {
         (self.sampler, self.prepared) = (sampler, None);
     }
@@ -191,7 +191,7 @@ impl ProgressiveRender {
         self.schedule.is_finished(self.seconds)
     }
 
-    /// Whether there is something to show.
+    /// Whether there is a picture to show.
     pub fn has_picture(&self) -> bool {
         self.schedule.has_picture()
     }
@@ -206,7 +206,7 @@ impl ProgressiveRender {
         self.seconds
     }
 
-    /// CPU time that the sampling threads have spent on it, in seconds.
+    /// CPU time that the sampling threads have spent on the render, in seconds.
     pub fn cpu_seconds(&self) -> f64 {
         self.cpu_seconds
     }
@@ -216,7 +216,7 @@ impl ProgressiveRender {
         self.schedule.set_limits(limits);
     }
 
-    /// The film as it stands.
+    /// The film in its present state.
     pub fn film(&self) -> &Film {
         &self.film
     }

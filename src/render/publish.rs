@@ -12,17 +12,17 @@ use super::layers::{Layer, LayerMap};
 /// A finished image of an unfinished render.
 #[derive(Clone, Debug, Default)]
 pub struct Picture {
-    /// The caller's number of the request it belongs to.
+    /// Generation of the request that the picture belongs to, numbered by the caller.
     pub generation: u64,
     /// Width and height.
     pub size: UVec2,
     /// Linear RGBA before exposure, row 0 on top. A pixel without samples shows its block.
     pub pixels: Vec<[f32; 4]>,
-    /// One of its layers; empty unless asked for.
+    /// Values of the requested layer; empty unless one is requested.
     pub layer: LayerMap,
     /// Samples that every pixel has.
     pub fewest_samples: u32,
-    /// The rectangle that gets all samples, and those of its pixel that has fewest.
+    /// Region that gets all samples, and the samples of its pixel that has fewest.
     pub focus: Option<(Area, u32)>,
     /// Variance of the gray mean of each pixel, and the variance of that; row 0 on top, NaN below two
     /// samples; empty unless asked for, and while pixels have no sample.
@@ -32,27 +32,27 @@ pub struct Picture {
     /// Blocks of 2 to this power pixels squared are of one color each, so that one pixel of each
     /// tells all; 0: any pixel may differ from the next.
     pub block_log2: u32,
-    /// Figures at the time it was made.
+    /// Figures at the time of the picture.
     pub stats: RenderStats,
 }
 
 /// The data that a picture brings along beside its light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Extras {
-    /// One of its layers.
+    /// The layer to publish beside the light.
     pub layer: Option<Layer>,
     /// The variance of its pixels.
     pub variance: bool,
 }
 
 impl Extras {
-    /// Whether it has anything that `other` has not.
+    /// Whether this request has anything that `other` lacks.
     pub fn adds_to(self, other: Self) -> bool {
         self.layer.is_some() && self.layer != other.layer || self.variance && !other.variance
     }
 }
 
-/// How far a render is.
+/// Progress and figures of a render.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RenderStats {
     /// Mean number of samples of a pixel.
@@ -71,7 +71,7 @@ pub struct RenderStats {
     pub guard_hits: u64,
     /// Relative standard error of the picture, see [`FilmStats::noise`]; none before two samples.
     pub noise: Option<f64>,
-    /// How often probes are asked, see
+    /// Guided flights of a camera ray, relative to those that the probes propose, see
     /// [`Prepared::guided_flights`](crate::transport::Prepared::guided_flights).
     pub guided_flights: Option<f32>,
     /// Whether the limit is reached.

@@ -5,7 +5,7 @@
 //! met at a finer stride are those that have no sample yet. After that come whole passes. A piece
 //! of work says "bring these pixels to so many samples": one that was broken off is simply given
 //! out again, and a film that comes from anywhere is continued where each of its pixels stands.
-//! That is also what lets a rectangle have all samples for a while, and the others catch up later.
+//! That is also what lets a region have all samples for a while, and the others catch up later.
 
 use std::ops::Range;
 
@@ -15,8 +15,8 @@ use super::area::Area;
 use super::coarse::COARSEST_STRIDE;
 use super::film::{MAX_SAMPLES, TILE, TILE_PIXELS};
 
-/// How long the coarse picture should take, in seconds. In a drag an edit waits for two of them, or
-/// four where two renders take turns, and for a frame, which should not be more than 0.1 s.
+/// Target time of the coarse picture, in seconds. In a drag an edit waits for two of them, or four
+/// where two renders share time slices, and for a frame, which should not be more than 0.1 s.
 const COARSE_SECONDS: f64 = 0.025;
 /// Strides that the first pass may begin with, coarse to fine.
 const FIRST_STRIDES: [u32; 4] = [COARSEST_STRIDE, 16, 8, 4];
@@ -36,16 +36,16 @@ const MOST_PASSES_AT_ONCE: u32 = 64;
 /// Weight of the newest measurement in the cost of a path.
 const COST_WEIGHT: f64 = 0.3;
 
-/// One piece of work.
+/// A piece of work for the threads.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Work {
-    /// Only pixels that stand for a block of this side; 1: all.
+    /// Stride: only pixels that stand for a block of this side; 1: all.
     pub stride: u32,
-    /// Bring each of them to this many samples.
+    /// Number of samples to bring each pixel to.
     pub target: u32,
-    /// Among these tiles of the film.
+    /// Tiles of the film that the work covers.
     pub tiles: Range<usize>,
-    /// Among the pixels of this rectangle; `None`: all.
+    /// Region to sample; `None`: the whole film.
     pub area: Option<Area>,
 }
 
@@ -54,13 +54,13 @@ pub struct Work {
 pub enum Next {
     /// Do this.
     Work(Work),
-    /// Nothing to do while paused.
+    /// The render is paused, so there is nothing to do.
     Paused,
     /// The limit is reached.
     Done,
 }
 
-/// When to stop.
+/// Limits of a render: samples and time.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Limits {
     /// Samples a pixel; 0: as many as fit the counts.
@@ -74,7 +74,7 @@ pub struct Limits {
 #[derive(Clone, Debug)]
 pub struct Schedule {
     size: UVec2,
-    /// Where samples go once every pixel has one; `None`: everywhere.
+    /// Region that gets all samples once every pixel has one; `None`: the whole film.
     area: Option<Area>,
     limits: Limits,
     stride: u32,
@@ -147,7 +147,7 @@ impl Schedule {
         Next::Work(Work { stride: self.stride, target: self.target, tiles, area })
     }
 
-    /// Takes note that some paths took some seconds, whether their work was completed or not.
+    /// Records that some paths took some seconds, whether their work was completed or not.
     pub fn measured(&mut self, paths: u64, seconds: f64) {
         if paths == 0 {
             return;
@@ -212,17 +212,17 @@ impl Schedule {
         if is_coarse { self.stride * 2 } else { 1 }
     }
 
-    /// Samples that every pixel has, or every one of those that get all.
+    /// Number of samples that every pixel has, or every pixel of the region that gets all.
     pub fn passes(&self) -> u32 {
         self.passes
     }
 
-    /// When it is to stop.
+    /// Limits of the render.
     pub fn limits(&self) -> Limits {
         self.limits
     }
 
-    /// Changes when it is to stop.
+    /// Changes the limits of the render.
     pub fn set_limits(&mut self, limits: Limits) {
         self.limits = limits;
     }
@@ -232,7 +232,7 @@ impl Schedule {
         self.seconds_per_path
     }
 
-    /// Where samples go now, unless it is everywhere.
+    /// Region that gets all samples now; `None` while the whole film does.
     fn focused_area(&self) -> Option<Area> {
         self.area.filter(|_| self.passes > 0)
     }
@@ -263,7 +263,7 @@ impl Schedule {
         (now * PUBLISH_GROWTH).clamp(shortest, longest).max(self.publish_cost * ratio)
     }
 
-    /// How long the next piece of work should take: until the next picture or the end.
+    /// Target time of the next piece of work, in seconds: until the next picture or the end.
     fn work_seconds(&self, now: f64) -> f64 {
         let interval = self.publish_interval(now);
         let left = self.published.map_or(interval, |last| last + interval - now);
@@ -271,8 +271,8 @@ impl Schedule {
         self.limits.seconds.map_or(left, |end| left.min(end - now))
     }
 
-    /// How many passes over the whole film fit the time; one at least, no more than wanted. The
-    /// first pass comes alone, for the picture to be complete early.
+    /// Number of passes over the whole film that fit `seconds`; one at least, no more than wanted.
+    /// The first pass comes alone, for the picture to be complete early.
     fn passes_at_once(&self, seconds: f64) -> u32 {
         let wanted = (self.most_samples() - self.passes).min(MOST_PASSES_AT_ONCE);
         let Some(cost) = self.seconds_per_path.filter(|_| self.passes > 0) else { return 1 };
@@ -280,7 +280,8 @@ impl Schedule {
         (fitting as u32).clamp(1, wanted)
     }
 
-    /// How many tiles fit the time, one at least; an eighth of all while the cost is unknown.
+    /// Number of tiles that fit `seconds`, one at least; an eighth of all while the cost is
+    /// unknown.
     fn tiles_within(&self, seconds: f64) -> usize {
         let tiles = self.band().len();
         let Some(cost) = self.seconds_per_path else { return tiles.div_ceil(8) };
@@ -368,7 +369,7 @@ mod tests {
         assert_eq!(strides, [(8, 1), (4, 1), (2, 1), (1, 1), (1, 2)]);
     }
 
-    /// Only between two parts of the first pass is the picture one of blocks.
+    /// The picture is one of blocks only between two parts of the first pass.
     #[test]
     fn blocks_are_as_large_as_the_last_whole_part_had_them() {
         let mut schedule = Schedule::new(SIZE, 0, spp(2), None);
@@ -417,10 +418,10 @@ mod tests {
         assert_eq!(Schedule::new(SIZE, 9, spp(4), None).next(0.0, false), Next::Done);
     }
 
-    /// The first pass is the whole film's, then all goes to the rectangle, and without it the others
-    /// catch up.
+    /// The first pass covers the whole film, then all samples go to the region, and without it the
+    /// others catch up.
     #[test]
-    fn a_rectangle_gets_all_samples_and_the_others_catch_up() {
+    fn a_region_gets_all_samples_and_the_others_catch_up() {
         let area = Area { first: UVec2::new(20, 18), size: UVec2::new(30, 20) };
         let inside =
             |index: usize| area.contains(UVec2::new(index as u32 % SIZE.x, index as u32 / SIZE.x));

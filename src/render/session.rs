@@ -109,7 +109,7 @@ impl Session {
         receiver
     }
 
-    /// Why the latest request stopped before its end, with its generation; none while all is well.
+    /// Failure that stopped the latest request, with its generation; `None` while all is well.
     pub fn last_failure(&self) -> Option<(u64, Failure)> {
         lock(&self.shared.failure).clone()
     }

@@ -1,5 +1,5 @@
-//! Rendering two settings of one scene without a window, on the same threads and in turns, so that
-//! both have had the same share whenever they are compared.
+//! Rendering two settings of one scene without a window, on the same threads in alternating time
+//! slices, so that both have had the same share whenever they are compared.
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -14,9 +14,9 @@ use crate::transport::PixelSampler;
 
 pub use super::time_slice::RenderedSide;
 
-/// What to compare and for how long.
+/// A comparison without a window: two samplers and their limits.
 pub struct PairJob {
-    /// What to sample for A and for B.
+    /// Samplers of A and B.
     pub samplers: [Arc<dyn PixelSampler>; 2],
     /// Width and height of both in pixels.
     pub size: UVec2,
@@ -26,17 +26,17 @@ pub struct PairJob {
     /// shares of that, without it of samples. It ends with a whole piece of work, so it is exceeded
     /// by a little, which the sides tell.
     pub cpu_seconds: Option<f64>,
-    /// Number of threads; none: one a core.
+    /// Number of threads; `None`: one per core.
     pub threads: Option<usize>,
 }
 
-/// What became of both.
+/// Films and figures of both sides.
 pub struct RenderedPair {
     /// A and B.
     pub sides: [RenderedSide; 2],
-    /// The threads that rendered them.
+    /// The threads that rendered both sides.
     pub pool: Pool,
-    /// Whether the interrupt ended it.
+    /// Whether the interrupt ended the render.
     pub interrupted: bool,
 }
 
@@ -55,8 +55,8 @@ pub fn render_side_by_side(
     let [a, b] = job.samplers;
     let mut sides =
         [SideInProgress::new(a, job.size, amount)?, SideInProgress::new(b, job.size, amount)?];
-    let interrupted = take_turns(&mut sides, &pool, interrupt, &mut |accounts| {
-        if let [a, b] = accounts {
+    let interrupted = take_turns(&mut sides, &pool, interrupt, &mut |usages| {
+        if let [a, b] = usages {
             progress(&[*a, *b]);
         }
     });

@@ -1,8 +1,9 @@
 //! Every toggle tried alone and left out, for a few seconds each: which strategy to leave on for a
 //! shot, what each toggle alone brings to it, and what is lost without it.
 //!
-//! [`plan()`] lists the trials, [`sweep`] renders them in turns on the same threads, [`Ranking`]
-//! holds them against each other as a comparison of two does, and [`words`] says what came out.
+//! [`plan()`] lists the trials, [`sweep`] renders them in time slices on the same threads,
+//! [`Ranking`] compares them pairwise as a comparison of two does, and [`words`] puts the result
+//! into sentences.
 //!
 //! Noise is measured on a film of few pixels: the mean variance of a pixel and the cost of a path
 //! depend on the shot and hardly on how finely it is cut, and a few seconds then bring each pixel
@@ -34,17 +35,17 @@ use crate::transport::{Frame, PixelSampler, PreparedFrame, Scene, prepare};
 /// CPU seconds of each strategy where nobody says how many.
 pub const DEFAULT_SECONDS: f64 = 3.0;
 
-/// Most pixels of a film whose size nobody asks for.
+/// Most pixels of a film whose size is not set.
 const MOST_PIXELS: f32 = 8192.0;
 
-/// The size of a film that is quick to measure and shows the same as one of `size` pixels.
+/// Size of a film that is quick to measure and representative of one of `size` pixels.
 pub fn quick_size(size: UVec2) -> UVec2 {
     let pixels = size.x as f32 * size.y as f32;
     let scale = (MOST_PIXELS / pixels.max(1.0)).sqrt().min(1.0);
     (size.as_vec2() * scale).round().as_uvec2().max(UVec2::ONE)
 }
 
-/// What to try and for how long.
+/// A sweep: the scene, its trials and their limits.
 pub struct SweepJob<'a> {
     /// The scene, under whatever strategy.
     pub scene: &'a Scene,
@@ -52,22 +53,22 @@ pub struct SweepJob<'a> {
     pub trials: &'a [Trial],
     /// Width and height of the films in pixels.
     pub size: UVec2,
-    /// Chooses the random numbers of all of them.
+    /// Seed of the random numbers of all trials.
     pub seed: u64,
-    /// How much is rendered of each.
+    /// Amount of rendering per trial.
     pub amount: Amount,
 }
 
-/// How far a sweep is.
+/// Progress of a sweep.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SweepProgress {
-    /// So many strategies of all have their probes and their pilot.
+    /// Number of strategies that have their probes and their pilot, and number of all.
     Preparing(usize, usize),
-    /// This part of the samples or of the time is spent, in 0..=1.
+    /// Rendering: the fraction of the samples or of the time that is spent, in 0..=1.
     Rendering(f64),
 }
 
-/// What became of a strategy.
+/// Film and figures of a rendered trial.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Tried {
     /// Noise and cost.
@@ -76,18 +77,18 @@ pub struct Tried {
     pub totals: Totals,
 }
 
-/// What became of all of them.
+/// Results of a sweep.
 pub struct Swept {
-    /// By trial; none of those that were not rendered.
+    /// Result of each trial; `None` for those that were not rendered.
     pub tried: Vec<Option<Tried>>,
-    /// Whether the interrupt ended it.
+    /// Whether the interrupt ended the sweep.
     pub interrupted: bool,
-    /// The number of the trial that ended it, and the sample that could not be taken.
+    /// Number of the trial that ended the sweep, and the sample that could not be taken.
     pub failure: Option<(usize, Failure)>,
 }
 
 impl Swept {
-    /// Ranks the trials that it was made from.
+    /// Ranks the trials that these results belong to.
     pub fn ranking(&self, trials: &[Trial]) -> Ranking {
         let sides: Vec<Option<SideFigures>> =
             self.tried.iter().map(|tried| tried.map(|tried| tried.side)).collect();
@@ -113,10 +114,10 @@ pub fn sweep(
         SideInProgress::new(sampler, job.size, job.amount)
     };
     let mut sides = frames.into_iter().map(begin).collect::<Result<Vec<_>>>()?;
-    let interrupted = take_turns(&mut sides, pool, interrupt, &mut |accounts| {
-        let part = |account: &Usage| job.amount.part(account);
-        let sum: f64 = accounts.iter().map(part).sum();
-        progress(SweepProgress::Rendering(sum / accounts.len() as f64));
+    let interrupted = take_turns(&mut sides, pool, interrupt, &mut |usages| {
+        let part = |usage: &Usage| job.amount.part(usage);
+        let sum: f64 = usages.iter().map(part).sum();
+        progress(SweepProgress::Rendering(sum / usages.len() as f64));
     });
     let mut swept = Swept { tried: vec![None; job.trials.len()], interrupted, failure: None };
     for (number, side) in std::iter::zip(numbers, sides) {

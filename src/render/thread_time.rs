@@ -8,7 +8,7 @@ pub(crate) fn thread_seconds() -> f64 {
     time.tv_sec as f64 + time.tv_nsec as f64 * 1.0e-9
 }
 
-/// Where the system has no such clock: the seconds since the first call, as if the thread had a
+/// Seconds since the first call, on systems without a clock of the thread: as if the thread had a
 /// core to itself.
 #[cfg(not(unix))]
 pub(crate) fn thread_seconds() -> f64 {

@@ -1,4 +1,4 @@
-//! Several renders of one scene that take turns on the same threads, so that all have had the same
+//! Time slices: several renders of one scene on the same threads, so that all have had the same
 //! share whenever they are compared.
 
 use std::sync::Arc;
@@ -16,21 +16,21 @@ use super::turns::{self, Share, Usage};
 use crate::error::Result;
 use crate::transport::PixelSampler;
 
-/// A side after its last turn.
+/// A side after its last time slice.
 pub struct RenderedSide {
     /// The film, consistent however the render ended.
     pub film: Film,
     /// CPU time of the threads that sampled it, in seconds.
     pub cpu_seconds: f64,
-    /// Seconds during which they did.
+    /// Wall time during which the threads sampled it, in seconds.
     pub seconds: f64,
-    /// How its noise went down.
+    /// History of the noise of the side.
     pub history: NoiseHistory,
-    /// The sample that ended it.
+    /// Failure of the sample that ended the render.
     pub failure: Option<Failure>,
 }
 
-/// How much is rendered of each side.
+/// Amount of rendering per side.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Amount {
     /// Samples a pixel; 0: as many as fit the counts.
@@ -45,7 +45,7 @@ pub struct Amount {
 }
 
 impl Amount {
-    /// How much of it a side has had, in 0..=1; 0 where there is no limit.
+    /// Fraction of the amount that a side has had, in 0..=1; 0 where there is no limit.
     pub fn part(&self, usage: &Usage) -> f64 {
         let by_samples = if self.spp > 0 { usage.samples / f64::from(self.spp) } else { 0.0 };
         let by_time = self.cpu_seconds.map_or(0.0, |end| usage.cpu_seconds / end);
@@ -85,7 +85,7 @@ pub(super) fn take_turns(
     false
 }
 
-/// A side under way.
+/// A side that is being rendered.
 pub(super) struct SideInProgress {
     render: ProgressiveRender,
     amount: Amount,
@@ -105,7 +105,7 @@ impl SideInProgress {
         Ok(Self { render, amount, history, closed: false, failure: None })
     }
 
-    /// Does one piece of work, no longer than what is left of its CPU time.
+    /// Does one piece of work, no longer than the CPU time left.
     fn turn(&mut self, pool: &Pool, stop: &(dyn Fn() -> bool + Sync)) {
         if let Some(all) = self.amount.cpu_seconds {
             let left = all - self.render.cpu_seconds();
@@ -123,8 +123,8 @@ impl SideInProgress {
         }
     }
 
-    /// When the next piece of work has to end, with so much of the CPU time left. Behind it only to
-    /// bring all pixels to the same number of samples.
+    /// Limits of the next piece of work, with `left` seconds of CPU time to go. Work goes beyond
+    /// them only to bring all pixels to the same number of samples.
     fn limits(&self, left: f64, threads: usize) -> Limits {
         let limits = self.amount.limits();
         if left > 0.0 {
@@ -142,7 +142,7 @@ impl SideInProgress {
         self.amount.evenly && (fewest < most || fewest < FEWEST_FOR_VARIANCE)
     }
 
-    /// Adds the present noise to the history, if every pixel has one.
+    /// Adds the present noise to the history, once every pixel has a variance.
     fn note_noise(&mut self, pool: &Pool) {
         let film = self.render.film();
         let (fewest, _) = film.sample_range();
@@ -162,7 +162,7 @@ impl SideInProgress {
         }
     }
 
-    /// Ends it.
+    /// Ends the render of the side.
     pub fn finish(mut self, pool: &Pool) -> RenderedSide {
         self.note_noise(pool);
         let (cpu_seconds, seconds) = (self.render.cpu_seconds(), self.render.seconds());

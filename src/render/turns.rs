@@ -1,4 +1,4 @@
-//! Whose turn it is when renders share one machine: pure bookkeeping, no threads and no clocks.
+//! Time slices of renders that share one machine: pure bookkeeping, no threads and no clocks.
 //!
 //! The next piece of work goes to the side that has had least so far. A piece never lasts longer
 //! than the schedule lets it, so sides are never further apart than one piece of one of them.
@@ -10,7 +10,7 @@ pub struct Usage {
     pub cpu_seconds: f64,
     /// Mean number of samples of a pixel.
     pub samples: f64,
-    /// Whether it takes no more turns: its limit is reached, or it has failed.
+    /// Whether the side takes no more slices: its limit is reached, or it has failed.
     pub closed: bool,
 }
 
@@ -33,8 +33,8 @@ impl Usage {
     }
 }
 
-/// The side whose turn it is: of those not closed the one that has had least, of several the first.
-/// `None` when all are closed.
+/// The side that gets the next time slice: of those not closed the one that has had least, of
+/// several the first. `None` when all are closed.
 pub fn next(usages: &[Usage], share: Share) -> Option<usize> {
     let open = usages.iter().enumerate().filter(|(_, usage)| !usage.closed);
     open.min_by(|(_, a), (_, b)| a.had(share).total_cmp(&b.had(share))).map(|(side, _)| side)
@@ -44,7 +44,7 @@ pub fn next(usages: &[Usage], share: Share) -> Option<usize> {
 mod tests {
     use super::*;
 
-    /// Gives out turns of `pieces` (seconds, samples) a side until `turns` are over.
+    /// Gives out time slices of `pieces` (seconds, samples) a side until `turns` are over.
     fn play(pieces: [(f64, f64); 2], share: Share, turns: usize) -> [Usage; 2] {
         let mut usages = [Usage::default(); 2];
         for _ in 0..turns {
@@ -66,7 +66,7 @@ mod tests {
         }
     }
 
-    /// The same with many of them, some of which end early.
+    /// Many sides, some of which end early, stay as close.
     #[test]
     fn many_sides_stay_within_the_longest_piece_of_each_other() {
         let pieces = [0.02, 0.31, 0.07, 0.11, 0.05, 0.19, 0.03, 0.23, 0.13, 0.017, 0.29, 0.041];

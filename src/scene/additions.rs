@@ -11,21 +11,22 @@ use crate::math::Aabb;
 
 /// The irradiance that a new light brings to the middle of the picture.
 const IRRADIANCE: f32 = 3.0;
-/// Where a new lamp stands, from the camera's target to the right, up and towards the camera, in
-/// half widths of the picture there: within the picture, so that the hand can take hold of it.
+/// Position of a new lamp from the camera's target: to the right, up and towards the camera, in
+/// half widths of the picture there. It lies within the picture, so that its handles can be
+/// dragged.
 const LAMP: Vec3A = Vec3A::new(-0.45, 0.3, 0.8);
 /// Radius of a new ball and half the edge of a new quad, in the same measure.
 const BALL: f32 = 0.12;
 const QUAD: f32 = 0.3;
 /// Half the edge of a floor, in sizes of what stands on it.
 const FLOOR: f32 = 20.0;
-/// How far below its volume a floor lies, in heights of the volume, so that nothing flickers
+/// Gap between a floor and the volume above it, in heights of the volume, so that nothing flickers
 /// where both would meet.
 const GAP: f32 = 1e-3;
 /// The color of a new floor.
 const FLOOR_REFLECTANCE: f32 = 0.4;
 
-/// A light of that kind for what `camera` looks at.
+/// A new light of that kind, placed for what `camera` sees.
 pub fn new_light(kind: LightKind, camera: &CameraSettings) -> LightSettings {
     let (center, eye) = (Vec3A::from(camera.target), Vec3A::from(camera.position));
     let away = eye - center;

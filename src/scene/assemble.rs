@@ -18,11 +18,11 @@ use crate::{
 pub(crate) use placement::world_from_file;
 use surfaces::LightOrSurface;
 
-/// Builds what the settings describe. Files and what was derived from them stay in `cache`, so
-/// that a scene of which only numbers have changed is built in a few milliseconds.
+/// Builds the scene of the settings. Files and what was derived from them stay in `cache`, so that
+/// a scene of which only numbers have changed is built in a few milliseconds.
 ///
 /// # Errors
-/// The settings are not valid, or a volume cannot be read; names the file, the key and the mend.
+/// The settings are not valid, or a volume cannot be read; names the file, the key and the fix.
 pub fn assemble(settings: &Settings, cache: &VolumeCache, progress: Progress) -> Result<Scene> {
     super::validate(settings, "")?;
     let mut surfaces: Vec<_> = settings.surface.iter().map(surfaces::surface).collect();
@@ -50,7 +50,7 @@ pub fn assemble(settings: &Settings, cache: &VolumeCache, progress: Progress) ->
 /// The camera of the settings.
 ///
 /// # Errors
-/// It looks nowhere; names the key.
+/// The camera has no direction; names the key.
 pub fn camera(settings: &Settings) -> Result<Camera> {
     let camera = &settings.camera;
     let [position, target, up] = [camera.position, camera.target, camera.up].map(Vec3A::from_array);

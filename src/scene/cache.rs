@@ -1,5 +1,5 @@
 //! Volume files in memory: each is read once, each grid of it when first needed, and what was
-//! derived from them is kept while only other numbers of the scene change.
+//! derived from them is reused while only other numbers of the scene change.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -28,9 +28,9 @@ pub(super) struct BuiltVolume {
     pub(super) settings: VolumeSettings,
     /// The file it was built from, if any.
     pub(super) file: Option<Arc<VolumeFile>>,
-    /// What was built.
+    /// The volume that was built.
     pub(super) volume: Arc<Volume>,
-    /// From the volume's own space to that of the file.
+    /// Transform from the volume's own space to that of the file.
     pub(super) file_from_local: DAffine3,
 }
 
@@ -42,19 +42,19 @@ pub struct VolumeFile {
     grids: Mutex<Vec<Option<VdbValues>>>,
 }
 
-/// What tells that a file has changed: its time and its size.
+/// Time and size of a file, which tell whether it has changed.
 type Stamp = (Option<SystemTime>, u64);
 
 /// A grid in memory with its place in the file's space.
 #[derive(Clone)]
 pub struct PlacedGrid {
-    /// Its name in the file.
+    /// Name of the grid in the file.
     pub name: String,
-    /// What it is meant to be.
+    /// Class of the grid, as its writer declared it.
     pub class: GridClass,
-    /// Its voxels.
+    /// Voxels of the grid.
     pub values: GridValues,
-    /// From its index space to the file's world.
+    /// Transform from the grid's index space to the file's world.
     pub world_from_index: DAffine3,
 }
 
@@ -68,7 +68,8 @@ pub enum GridValues {
 }
 
 impl VolumeCache {
-    /// The file of that name (`builtin:NAME` for an embedded one), read again if it has changed.
+    /// The volume file of that name (`builtin:NAME` for an embedded one), read again if it has
+    /// changed.
     ///
     /// # Errors
     /// It cannot be read or is not a volume file; names the file.
@@ -130,12 +131,12 @@ impl BuiltVolume {
 }
 
 impl VolumeFile {
-    /// The name it was asked for by.
+    /// Name by which the file was requested.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// What is known of the file and its grids without their voxels.
+    /// Directory of the file: its grids without their voxels.
     pub fn directory(&self) -> &Directory {
         &self.directory
     }
@@ -202,7 +203,7 @@ impl PlacedGrid {
         Self { name: info.name.clone(), class: info.class, values, world_from_index }
     }
 
-    /// The box around its stored voxels in index space, both ends included; `None` if empty.
+    /// Box around the stored voxels in index space, both ends included; `None` if empty.
     pub fn bounds(&self) -> Option<IndexBox> {
         match &self.values {
             GridValues::Float(grid) => grid.bounds(),

@@ -19,10 +19,10 @@ pub enum Program {
 }
 
 impl Program {
-    /// All of them.
+    /// All conventions.
     pub const ALL: [Self; 3] = [Self::Blender, Self::Houdini, Self::EmberGen];
 
-    /// Its name.
+    /// Name of the convention.
     pub fn name(self) -> &'static str {
         match self {
             Self::Blender => "Blender",
@@ -31,7 +31,7 @@ impl Program {
         }
     }
 
-    /// The axis of its files that points up.
+    /// Axis of the program's files that points up.
     pub fn up(self) -> Axis {
         match self {
             Self::Houdini => Axis::Y,
@@ -65,7 +65,7 @@ impl Program {
         })
     }
 
-    /// By which of its grids fire is drawn, the best first.
+    /// Roles whose grids may drive fire, the best first.
     fn fire(self) -> [Role; 2] {
         match self {
             Self::Blender | Self::Houdini => [Role::Temperature, Role::Flame],

@@ -12,37 +12,37 @@ use crate::volume::vdb::GridInfo;
 /// A volume file in words and numbers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FileDescription {
-    /// The name it was asked for by.
+    /// Name by which the file was requested.
     pub file: String,
     /// The file's own named values.
     pub metadata: Vec<(String, String)>,
-    /// Its grids in the order of the file.
+    /// Grids in the order of the file.
     pub grids: Vec<GridDescription>,
 }
 
 /// A grid of a file in words and numbers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GridDescription {
-    /// Its name.
+    /// Name of the grid.
     pub name: String,
-    /// The type of its values: `float`, `half float`, `vec3`, ... as the file says.
+    /// Type of the grid's values: `float`, `half float`, `vec3`, ... as the file says.
     pub type_name: String,
-    /// The class that the file gives it: `fog volume`, `level set`, ...
+    /// Class that the file gives the grid: `fog volume`, `level set`, ...
     pub class: String,
     /// Edges of a voxel in the file's space.
     pub voxel_size: [f64; 3],
-    /// Its voxels, if it can be rendered.
+    /// Voxels of the grid, if it can be rendered.
     pub voxels: Option<VoxelDescription>,
-    /// Why it cannot be rendered.
+    /// Reason why the grid cannot be rendered.
     pub unsupported: Option<String>,
 }
 
 /// The voxels of a grid in numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct VoxelDescription {
-    /// Whether they are vectors, such as colors.
+    /// Whether voxels are vectors, such as colors.
     pub is_vector: bool,
-    /// How many are active.
+    /// Number of active voxels.
     pub active: u64,
     /// The smallest active value; of vectors the smallest component.
     pub min: f32,
@@ -52,9 +52,9 @@ pub struct VoxelDescription {
     pub mean: f32,
     /// The corners of the box around the stored voxels in the file's space; `None` if empty.
     pub bounds: Option<[[f32; 3]; 2]>,
-    /// Memory that they take.
+    /// Memory of the voxels in bytes.
     pub memory_bytes: usize,
-    /// How often values occur, from `min` to `max`; of vectors their largest components.
+    /// Histogram of the values from `min` to `max`; of vectors of their largest components.
     pub histogram: Histogram,
 }
 

@@ -1,4 +1,4 @@
-//! Which toggles change nothing in the scene at hand, and why.
+//! Toggles that change nothing in the scene at hand, each with the reason.
 
 use crate::scene::Settings;
 use crate::scene::settings::{
@@ -7,11 +7,11 @@ use crate::scene::settings::{
 use crate::transport::strategy::{Distance, NeeEvaluation, Strategy};
 use crate::transport::toggle::Toggle;
 
-/// Why most toggles are idle with ray marching.
+/// Reason why most toggles are idle with ray marching.
 const MARCHING: &str =
     "ray marching (Advanced) collects emission and samples distances in its own way.";
 
-/// Why `toggle` makes no difference to noise or cost in this scene; `None` where it does.
+/// Reason why `toggle` makes no difference to noise or cost in this scene; `None` where it does.
 pub fn no_effect(toggle: Toggle, settings: &Settings) -> Option<&'static str> {
     let strategy = &settings.strategy;
     if strategy.is_biased() && toggle != Toggle::FireAsLight {
@@ -32,7 +32,7 @@ pub fn no_effect(toggle: Toggle, settings: &Settings) -> Option<&'static str> {
         Toggle::MajorantBoost if strategy.advanced.boost_amount <= 0.0 => {
             Some("the boost amount is 0.")
         }
-        Toggle::MajorantBoost if !reads_the_glow_in_steps(settings) => Some(
+        Toggle::MajorantBoost if !reads_emission_in_steps(settings) => Some(
             "it needs decoupling, ratio tracking or fire as a light (line), which collect emission \
              at every step.",
         ),
@@ -63,8 +63,8 @@ fn probes_without_effect(settings: &Settings) -> Option<&'static str> {
     }
 }
 
-/// Whether some walk reads the glow at every step, which is what the boost adds steps to.
-fn reads_the_glow_in_steps(settings: &Settings) -> bool {
+/// Whether some walk reads emission at every step, which is what the boost adds steps to.
+fn reads_emission_in_steps(settings: &Settings) -> bool {
     let strategy = &settings.strategy;
     strategy.emission_decoupling
         || strategy.emission_ratio_tracking
@@ -73,7 +73,7 @@ fn reads_the_glow_in_steps(settings: &Settings) -> bool {
             && turns_light(settings))
 }
 
-/// Whether light can change its direction: only there does a path look for lights.
+/// Whether light can change its direction: only there does a path sample lights.
 fn turns_light(settings: &Settings) -> bool {
     settings.volume.iter().any(scatters) || settings.surface.iter().any(reflects)
 }

@@ -1,4 +1,4 @@
-//! What the program carries with it, so that it shows something from any folder.
+//! Scenes and volumes embedded in the program, so that it shows something from any folder.
 
 use std::path::Path;
 
@@ -57,7 +57,7 @@ pub fn volume(file: &str) -> Result<Option<&'static [u8]>> {
     }
 }
 
-/// What to call a volume file: its name without folders and extension.
+/// Short name of a volume file, without folders and extension.
 pub(super) fn short_name(file: &str) -> &str {
     let file = file.strip_prefix(BUILTIN).unwrap_or(file);
     Path::new(file).file_stem().and_then(|stem| stem.to_str()).unwrap_or(file)

@@ -6,7 +6,7 @@ use std::path::{Component, Path, PathBuf};
 use super::keys;
 use crate::error::{Error, Result};
 
-/// What begins the name of something embedded in the program.
+/// Prefix of the names of embedded scenes and volumes.
 pub(super) const BUILTIN: &str = "builtin:";
 
 /// Whether the key at `path` names a file.

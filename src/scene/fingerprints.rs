@@ -1,4 +1,4 @@
-//! Whether the files of a scene are still those that a picture was rendered from.
+//! Fingerprints of a scene's files: whether they are still those that a picture was rendered from.
 
 use std::path::Path;
 

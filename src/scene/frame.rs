@@ -8,8 +8,8 @@ use crate::math::Aabb;
 /// The share of the picture that the box may take.
 const FILL: f32 = 0.95;
 
-/// The camera that looks at the middle of `bounds` from where `view` stands, in its field of view,
-/// moved so far off that the box fills a picture of `aspect` (width / height).
+/// A camera with the view direction and field of view of `view`, aimed at the middle of `bounds`
+/// and moved so far off that the box fills a picture of `aspect` (width / height).
 pub fn frame(view: &CameraSettings, bounds: &Aabb, aspect: f32) -> CameraSettings {
     let center = bounds.center();
     let forward = Vec3A::from(Vec3::from(view.target) - Vec3::from(view.position));

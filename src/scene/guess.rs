@@ -1,5 +1,5 @@
-//! A bare volume in place of a scene: what its grids are, which way is up, how thick and bright it
-//! should look, and where to look from. Every guess is an ordinary setting, and is told in words.
+//! Guesses for a bare volume in place of a scene: the roles of its grids, the up axis, density,
+//! brightness and camera. Every guess is an ordinary setting, and is reported in a note.
 
 mod emission;
 mod note;
@@ -33,20 +33,20 @@ pub struct Guess {
     pub notes: Vec<Note>,
 }
 
-/// How a volume should look.
+/// Appearance of a volume: how thick and how bright it is made.
 struct Appearance {
-    /// Words in the file's name that ask for it.
+    /// Words in the file's name that select the appearance.
     words: &'static [&'static str],
     /// The optical depth of a fairly thick line of sight.
     depth: f32,
-    /// The share of light that it scatters.
+    /// Albedo: the share of light that is scattered.
     albedo: f32,
-    /// The radiance of a fairly bright line of sight through its fire, if nothing hid it.
+    /// Radiance of a fairly bright line of sight through the fire, if nothing hid it.
     radiance: f32,
 }
 
-/// Looks that the name of a file asks for.
-const NAMED_LOOKS: &[Appearance] = &[
+/// Appearances that the name of a file asks for.
+const NAMED_APPEARANCES: &[Appearance] = &[
     Appearance { words: &["cloud", "cumulus", "wdas"], depth: 25.0, albedo: 0.99, radiance: 1.0 },
     Appearance { words: &["fog", "mist", "haze"], depth: 1.5, albedo: 0.95, radiance: 1.0 },
 ];
@@ -164,7 +164,7 @@ fn look_of(name: &str, density: Option<&Candidate>, is_fire: bool) -> &'static A
     match density {
         Some(density) if is_fire && density.max < SOOT_BELOW => &SOOT,
         _ if is_fire => &FIRE_SMOKE,
-        _ => NAMED_LOOKS.iter().find(is_named).unwrap_or(&SMOKE),
+        _ => NAMED_APPEARANCES.iter().find(is_named).unwrap_or(&SMOKE),
     }
 }
 

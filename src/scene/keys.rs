@@ -1,4 +1,4 @@
-//! Every key of the scene file, read off the schema of the one settings struct.
+//! All keys of the scene file, read from the schema of the one settings struct.
 
 use std::sync::LazyLock;
 
@@ -7,30 +7,30 @@ use serde_json::Value;
 
 use super::schema::{self, NumberBounds};
 
-/// One key, as `flambeau keys` prints it.
+/// A key of the scene file, as `flambeau keys` prints it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Key {
     /// The dotted path; `N` stands for the index of a list item, counted from 0.
     pub path: String,
-    /// What may be written: `number`, `[number, number, number]`, `"a" | "b"`, ...
+    /// Type of the value: `number`, `[number, number, number]`, `"a" | "b"`, ...
     #[serde(rename = "type")]
     pub kind: String,
-    /// The unit, if it has one.
+    /// Unit of the value, if it has one.
     pub unit: Option<String>,
-    /// What its absence means, as TOML; `None` where absence is a meaning of its own.
+    /// Default value as TOML; `None` where absence is a meaning of its own.
     pub default: Option<String>,
-    /// The bounds of each number in it, if there are any.
+    /// Bounds of each number in the value, if there are any.
     pub range: Option<String>,
     /// The same as the smallest and the largest number; infinite where there is no bound.
     #[serde(skip)]
     pub limits: [f64; 2],
-    /// What it does.
+    /// Help text of the key.
     pub help: String,
-    /// The choices it belongs to (`shape = "sphere"`), if it does not always apply.
+    /// Choices that the key belongs to (`shape = "sphere"`), if it does not always apply.
     pub only: Option<String>,
 }
 
-/// Every key, table by table.
+/// All keys, table by table.
 pub fn all() -> &'static [Key] {
     static KEYS: LazyLock<Vec<Key>> = LazyLock::new(|| {
         let mut keys = Vec::new();
@@ -51,7 +51,7 @@ pub fn choices(path: &str) -> Vec<&'static str> {
     at(path).map(schema::choices).unwrap_or_default()
 }
 
-/// The same names, each with what it means.
+/// Names of the choices of a key, each with its meaning.
 pub fn explained_choices(path: &str) -> Vec<(&'static str, &'static str)> {
     at(path).map(schema::explained_choices).unwrap_or_default()
 }

@@ -1,4 +1,4 @@
-//! From a name to settings: a scene file, an embedded scene, or a bare volume.
+//! Loading settings by name: a scene file, an embedded scene, or a bare volume.
 
 use std::path::Path;
 
@@ -7,12 +7,12 @@ use super::guess::Note;
 use super::{Overrides, Settings, VolumeCache, apply, embedded, guess, parse};
 use crate::error::{Error, NO_PROGRESS, Progress, Result};
 
-/// What was opened.
+/// A scene or volume that was opened.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Opened {
     /// The scene.
     pub settings: Settings,
-    /// What was guessed for a bare volume; empty for scenes.
+    /// Notes on the guesses for a bare volume; empty for scenes.
     pub notes: Vec<Note>,
 }
 
@@ -31,16 +31,17 @@ pub fn scene_file(source: &str) -> Option<&Path> {
 /// The settings of a scene file, of a bare volume, or of `builtin:NAME`.
 ///
 /// # Errors
-/// It cannot be read, or something in it is wrong; names the file, the key and the mend.
+/// The source cannot be read, or something in it is wrong; names the file, the key and the fix.
 pub fn load(source: &str) -> Result<Settings> {
     let cache = VolumeCache::default();
     open(source, &Overrides::default(), &cache, NO_PROGRESS).map(|opened| opened.settings)
 }
 
-/// As [`load`], with overrides laid over it. What is read of a bare volume stays in `cache`.
+/// Opens a source as [`load`] does, with overrides laid over it. Data read of a bare volume stays
+/// in `cache`.
 ///
 /// # Errors
-/// As [`load`], and [`Error::Cancelled`].
+/// Those of [`load`], and [`Error::Cancelled`].
 pub fn open(
     source: &str,
     overrides: &Overrides,

@@ -1,9 +1,18 @@
 //! Scenes: the one settings struct, its file format, and what is built from it.
 //!
 //! ```text
-//! name --load--> text --parse--> settings --build--> transport::Scene
+//! name --load--> text --parse--> settings --assemble--> transport::Scene
 //!         \----> bare volume --guess--/  \--save--> text
 //! ```
+//!
+//! - `load`, `files`, `embedded`: opening a source by name; [`cache`]: volume files in memory.
+//! - `parse`, `overrides`: TOML text to settings; `save`: settings to text.
+//! - `check`, `rules`: errors in keys and values; `schema`, [`keys`]: the schema and its keys.
+//! - [`settings`]: the settings struct; [`effect`]: toggles that change nothing in a scene.
+//! - `assemble`: settings to the scene that is rendered.
+//! - `guess`, `conventions`, `grid_names`, `role`: settings for a bare volume; `frame`: its camera.
+//! - `additions`: new lights and floors; `describe`: the contents of a volume file for people.
+//! - `resume`, `fingerprints`: whether a snapshot can be continued, and whether its files changed.
 
 mod additions;
 mod assemble;

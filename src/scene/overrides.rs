@@ -196,11 +196,11 @@ fn index_in(count: usize, text: &str, path: &str, may_append: bool) -> Result<us
     match text.parse::<usize>() {
         Ok(index) if index < last => Ok(index),
         Ok(index) => {
-            let mend = match may_append {
+            let fix = match may_append {
                 true => format!("there are {count}; {path}.{count} adds one"),
                 false => format!("there are {count}, counted from 0"),
             };
-            Err(Error::invalid(OVERRIDES, path, format!("there is no item {index}: {mend}")))
+            Err(Error::invalid(OVERRIDES, path, format!("there is no item {index}: {fix}")))
         }
         Err(_) => {
             let reason = format!("expected an index after {path}, such as {path}.0, found {text}");

@@ -14,7 +14,7 @@ use crate::error::{Error, Result};
 /// file names start from `folder`.
 ///
 /// # Errors
-/// Names the source, the key and the mend: syntax, unknown keys, wrong types, values out of range.
+/// Names the source, the key and the fix: syntax, unknown keys, wrong types, values out of range.
 pub fn parse(text: &str, source: &str, folder: &Path, overrides: &Overrides) -> Result<Settings> {
     let mut scene: Table = toml::from_str(text).map_err(|e| syntax(text, source, &e))?;
     expand_preset(&mut scene, source)?;
@@ -29,7 +29,7 @@ pub fn parse(text: &str, source: &str, folder: &Path, overrides: &Overrides) -> 
 /// Settings with overrides laid over them.
 ///
 /// # Errors
-/// Names `--set`, the key and the mend.
+/// Names `--set`, the key and the fix.
 pub fn apply(settings: &Settings, overrides: &Overrides) -> Result<Settings> {
     if overrides.is_empty() {
         return Ok(settings.clone());

@@ -8,28 +8,28 @@ use crate::files::Fingerprint;
 use crate::image::exr::SnapshotHeader;
 use crate::transport::PATH_VERSION;
 
-/// Why new samples may not join those of a snapshot.
+/// Reason why new samples may not join those of a snapshot.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Blocker {
-    /// What is not as it was.
+    /// The difference from the snapshot.
     pub what: String,
-    /// What to do about it.
+    /// Advice on what to do instead.
     pub fix: &'static str,
 }
 
-/// How a snapshot stands to a scene.
+/// Compatibility of a snapshot with a scene.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Compatibility {
-    /// What keeps it from being continued, if anything does.
+    /// Blocker that keeps the snapshot from being continued, if there is one.
     pub blocker: Option<Blocker>,
-    /// What could not be made sure of, one sentence each.
+    /// Warnings of what could not be verified, one sentence each.
     pub warnings: Vec<String>,
 }
 
 /// The settings that the snapshot `name` was rendered with.
 ///
 /// # Errors
-/// Its header holds no scene of this version; names the key and the mend.
+/// The header holds no scene of this version; names the key and the fix.
 pub fn settings_of(header: &SnapshotHeader, name: &str) -> Result<Settings> {
     parse(&header.scene, name, Path::new("/"), &Overrides::default())
 }
@@ -81,7 +81,7 @@ fn other_paths(header: &SnapshotHeader) -> Option<Blocker> {
     (header.path_version != PATH_VERSION).then_some(Blocker { what, fix })
 }
 
-/// What has become of a file.
+/// Blocker if a file is no longer the one that the snapshot was rendered from.
 fn change(then: &Fingerprint, now: &Fingerprint) -> Option<Blocker> {
     if then == now {
         return None;

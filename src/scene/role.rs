@@ -22,7 +22,7 @@ pub enum Role {
 }
 
 impl Role {
-    /// All of them.
+    /// All roles.
     pub const ALL: [Self; 4] = [Self::Density, Self::Temperature, Self::Flame, Self::Emission];
 
     /// The names of grids with this role, the best first.
@@ -41,7 +41,7 @@ impl Role {
         grid.class != "level set" && grid.voxels.is_some_and(|voxels| fits(voxels.is_vector))
     }
 
-    /// The grid that is named like it.
+    /// The grid whose name fits the role best.
     pub fn best_of(self, grids: &[GridDescription]) -> Option<&GridDescription> {
         let rank = |grid: &&GridDescription| {
             self.names().iter().position(|name| grid.name.eq_ignore_ascii_case(name))
@@ -72,7 +72,7 @@ impl Role {
         }
     }
 
-    /// Has `volume` use `grid` so. How thick and how bright it is stays as far as it can.
+    /// Has `volume` use `grid` in this role. Its thickness and brightness stay as far as they can.
     pub fn give(self, volume: &mut VolumeSettings, grid: &GridDescription) {
         let Some(mode) = self.mode() else {
             volume.density.grid = Some(grid.name.clone());
@@ -109,7 +109,7 @@ fn visible_scale(grid: &GridDescription) -> f32 {
     depth.filter(|depth| *depth > 0.0).map_or(1.0, |depth| two_digits(DEPTH / depth))
 }
 
-/// From nothing through red and orange to yellow at the grid's largest value.
+/// Ramp from nothing through red and orange to yellow at the grid's largest value.
 pub(super) fn flame_stops(max: f32) -> Vec<[f32; 4]> {
     let max = if max > 0.0 { max } else { 1.0 };
     [[0.0, 0.0, 0.0, 0.0], [0.35, 0.5, 0.05, 0.003], [0.7, 2.0, 0.6, 0.08], [1.0, 3.0, 1.6, 0.5]]

@@ -1,5 +1,5 @@
-//! What several values of a scene must be together: directions that point somewhere, placements
-//! that can be undone, a volume that is either a file or a shape.
+//! Rules across several values of a scene: directions that are not zero, placements that can be
+//! inverted, a volume that is either a file or a shape.
 
 use glam::{Mat3, Vec3};
 
@@ -98,7 +98,7 @@ fn placement(volume: &VolumeSettings) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Without extinction a glow that fills space adds up to infinity.
+/// Without extinction, emission that fills space adds up to infinity.
 fn everywhere(volume: &VolumeSettings) -> Result<(), Fault> {
     let emits = !matches!(volume.emission.mode, EmissionMode::None | EmissionMode::Source);
     if emits && volume.density.scale.rgb().min_element() <= 0.0 {

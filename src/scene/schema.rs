@@ -80,7 +80,7 @@ pub(super) fn explained_choices(schema: &Value) -> Vec<(&str, &str)> {
         .collect()
 }
 
-/// What may be written for a key, in words.
+/// Type of a key's value in words.
 pub(super) fn label(schema: &Value) -> String {
     if let Some(label) = schema.get("label").and_then(Value::as_str) {
         return label.to_owned();
@@ -132,7 +132,7 @@ impl NumberBounds {
         present(schema).map_or(own, |inner| own.or(Self::of(inner)))
     }
 
-    /// These bounds, and for what they leave open those of the `inner` schema.
+    /// These bounds, completed by those of the `inner` schema.
     pub(super) fn or(self, inner: Self) -> Self {
         Self {
             min: self.min.or(inner.min),

@@ -19,7 +19,7 @@ use crate::render::compare::{NoiseHistory, SideFigures};
 /// Width of a column of figures.
 const FIGURE: f32 = 52.0;
 
-/// A column: what stands above it, what that means, and a cell a picture.
+/// A column of a table: its heading, the meaning of its figures, and one cell per picture.
 pub struct Column {
     heading: &'static str,
     help: &'static str,
@@ -27,17 +27,17 @@ pub struct Column {
 }
 
 impl Column {
-    /// How many cells it has.
+    /// Number of cells of the column.
     pub fn count(&self) -> usize {
         self.cells.len()
     }
 
-    /// Its meaning.
+    /// Explanation of the column for its tooltip.
     pub fn help(&self) -> &'static str {
         self.help
     }
 
-    /// A cell with what it is.
+    /// Cell of the picture `index` with the heading of the column.
     pub fn in_words(&self, index: usize) -> String {
         let cell = self.cells.get(index).map_or("–", String::as_str);
         format!("{} {cell}", self.heading)
@@ -125,8 +125,8 @@ pub fn names(count: usize) -> &'static [&'static str] {
     if count > 1 { &["A", "B"] } else { &[""] }
 }
 
-/// Shows what is known of A and B, and how noise and errors went down. Of one picture the rest
-/// stands below it.
+/// Shows the figures of A and B, and how noise and errors fell over time. Those of a single picture
+/// stand below it instead.
 pub fn show(ui: &mut Ui, second_side: &SecondSide, reference: &mut MeasuredReference) {
     let both = second_side.comparison();
     if let Some(both) = both {
@@ -164,7 +164,7 @@ fn grid(ui: &mut Ui, id: &str, columns: &[Column]) {
     });
 }
 
-/// How noise and errors went down; `noise` is that of A and B where there are two.
+/// Plot of noise and errors over time; `noise` is that of A and B where there are two.
 fn over_time(ui: &mut Ui, reference: &mut MeasuredReference, noise: Option<&[NoiseHistory; 2]>) {
     let errors = Measure::ALL.map(Plotted::Error);
     let first = noise.map(|_| Plotted::Noise);

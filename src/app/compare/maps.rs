@@ -12,47 +12,47 @@ use crate::image::ramp::{self, Scale};
 use crate::image::tone::{Tone, ToneCurve, false_color, linear_from_srgb};
 use crate::render::{LayerMap, Picture};
 
-/// How a difference is measured, of gray values.
+/// Kind of the difference of gray values between A and B.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Difference {
     /// B − A.
     Signed,
     /// |B − A|.
     Absolute,
-    /// |B − A| relative to their mean.
+    /// |B − A| relative to the mean of A and B.
     Relative,
 }
 
 /// A map of noise.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Noise {
-    /// The standard error of a side's pixels.
+    /// Standard error of a side's pixels.
     Of(Side),
-    /// That of B over that of A.
+    /// Standard error of B over that of A.
     Ratio,
 }
 
 /// The kind of a map of two pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MapKind {
-    /// How they differ.
+    /// Differences of A and B.
     Difference(Difference),
-    /// How noisy they are.
+    /// Noise of A or B, or the ratio of both.
     Noise(Noise),
-    /// How far one is from the reference: of that side, where there are two.
+    /// Errors of one picture against the reference: of that side, where there are two.
     Error(Measure, Option<Side>),
 }
 
 /// Numbers a pixel, as a picture to show.
 #[derive(Clone, Debug)]
 pub struct Map {
-    /// The kind of its numbers.
+    /// Kind of the numbers.
     pub kind: MapKind,
     /// The picture.
     pub picture: Arc<Picture>,
-    /// How it is shown.
+    /// Tone or scale that the map is shown with.
     pub look: Look,
-    /// The meaning of its colors.
+    /// Meaning of the colors.
     pub key: ColorKey,
 }
 
@@ -70,7 +70,7 @@ pub enum ColorKey {
     },
     /// Magma, evenly from 0 to 1.
     Magma,
-    /// One color a stop from middle gray.
+    /// False colors, one per stop of exposure from middle gray.
     Stops,
 }
 

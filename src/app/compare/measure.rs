@@ -1,10 +1,10 @@
-//! How an error against the reference is measured, and what is plotted over time.
+//! Measures of the error against a reference, and the quantity that is plotted over time.
 
 use crate::app::ui::widgets::significant;
 use crate::image::metrics::{ErrorMap, Errors};
 use crate::render::Area;
 
-/// How an error is measured.
+/// Measure of the error against a reference.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Measure {
     /// Squared errors in linear light, relative to the reference.
@@ -18,7 +18,7 @@ impl Measure {
     /// Both measures.
     pub const ALL: [Self; 2] = [Self::RelMse, Self::Flip];
 
-    /// Its name.
+    /// Name of the measure.
     pub fn name(self) -> &'static str {
         match self {
             Self::RelMse => "relMSE",
@@ -34,7 +34,7 @@ impl Measure {
         }
     }
 
-    /// Their mean over an area, or over all.
+    /// Mean error over an area, or over the whole picture.
     pub fn mean(self, errors: &Errors, area: Option<Area>) -> f64 {
         let map = self.of(errors);
         area.map_or(map.mean, |area| map.mean_of(area.first, area.size))
@@ -52,7 +52,7 @@ pub enum Plotted {
 }
 
 impl Plotted {
-    /// Its name.
+    /// Name of the quantity.
     pub fn name(self) -> &'static str {
         match self {
             Self::Noise => "Noise",
@@ -79,7 +79,7 @@ impl Plotted {
         }
     }
 
-    /// The power of time that it falls with while all of it is noise, if there is one.
+    /// Exponent of time with which the quantity falls while all of it is noise, if there is one.
     pub fn power(self) -> Option<f64> {
         match self {
             Self::Noise => Some(0.5),

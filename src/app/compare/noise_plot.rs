@@ -1,4 +1,4 @@
-//! How noise and errors fall with the time spent, of one picture or of two, on logarithmic axes.
+//! Plot of noise and errors over the time spent, of one picture or of two, on logarithmic axes.
 
 use egui::{Align2, Color32, Pos2, Rect, Sense, Stroke, TextStyle, Ui, pos2, vec2};
 
@@ -9,7 +9,7 @@ use crate::render::compare::NoiseHistory;
 
 /// Height of the plot.
 const HEIGHT: f32 = 150.0;
-/// Room for the numbers left of it and below it.
+/// Room for the numbers left of the plot and below it, in points.
 const MARGIN: egui::Vec2 = vec2(44.0, 18.0);
 
 /// The colors of A and of B.
@@ -41,7 +41,7 @@ impl Range {
         Some(Self { low, high })
     }
 
-    /// Where a point lies in `rect`.
+    /// Position of a point in `rect`.
     fn place(&self, rect: Rect, point: [f64; 2]) -> Pos2 {
         let share = |axis: usize| {
             let span = self.high[axis] - self.low[axis];

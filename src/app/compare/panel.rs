@@ -1,4 +1,4 @@
-//! The two sides of a comparison: which one is edited, how both are shown, what is known of them.
+//! The panel of a comparison: which side is edited, how both are shown, and their figures.
 
 use egui::{RichText, Ui};
 
@@ -95,7 +95,7 @@ fn name(side: Side, document: &Document, second_side: &SecondSide) -> String {
     }
 }
 
-/// The same; of a biased side with that.
+/// Title of a side: the name of its strategy or snapshot, marked where the side is biased.
 pub fn side_title(side: Side, document: &Document, second_side: &SecondSide) -> String {
     let bias = if is_biased(side, document, second_side) { ", biased" } else { "" };
     format!("{}{bias}", name(side, document, second_side))
@@ -259,7 +259,7 @@ pub fn verdict(ui: &mut Ui, comparison: Option<&Comparison>, biased: [bool; 2]) 
     }
 }
 
-/// That both sides show different pictures, where they do, and which of them is biased.
+/// A sentence that both sides show different pictures, where they do, and which of them is biased.
 pub fn disagreement(comparison: &Comparison, biased: [bool; 2]) -> Option<String> {
     let who = match biased {
         [false, false] => "",

@@ -57,10 +57,10 @@ impl MeasureTask {
     }
 }
 
-/// How what is measured is looked at.
+/// View of the measured pictures: their tone, and which of them are snapshots.
 #[derive(Clone, Copy, Debug)]
 pub struct MeasureView {
-    /// How it is shown.
+    /// Tone mapping of the pictures.
     pub tone: Tone,
     /// The side of the main engine, where there are two.
     pub main: Option<Side>,
@@ -78,19 +78,19 @@ struct MeasureResult {
 }
 
 impl MeasureResult {
-    /// How long nothing should be measured after it.
+    /// Pause until the next measurement.
     fn rest(&self) -> Duration {
         (REST * self.took).saturating_sub(self.ended.elapsed())
     }
 }
 
-/// Which map of the errors is wanted: how measured, of which picture.
+/// Request for a map of the errors: the measure and the picture.
 #[derive(Clone)]
 struct MapTask {
     errors: Arc<Vec<Errors>>,
     measure: Measure,
     index: usize,
-    /// The side whose map it is, where there are two.
+    /// Side that the map is of, where there are two.
     side: Option<Side>,
 }
 
@@ -104,7 +104,7 @@ pub struct MeasuredReference {
     files: Vec<(String, PathBuf)>,
     errors: Background<MeasureTask, MeasureResult>,
     map: Background<MapTask, Option<Map>>,
-    /// How relMSE and FLIP of both sides went down.
+    /// Histories of relMSE and FLIP of both sides.
     histories: [[NoiseHistory; 2]; 2],
     noted: Option<Instant>,
     /// The quantity that the panel plots over time.
@@ -115,7 +115,8 @@ pub struct MeasuredReference {
 }
 
 impl MeasuredReference {
-    /// Without a reference, but with the files of those of some scenes; `pool` will measure.
+    /// A state without a reference, but with the reference files of some scenes; `pool` will
+    /// measure.
     pub fn new(pool: &BackgroundPool, files: Vec<(String, PathBuf)>) -> Self {
         Self {
             loaded: None,
@@ -205,7 +206,7 @@ impl MeasuredReference {
         Ok(())
     }
 
-    /// Whether it is of another size than pictures of `size`.
+    /// Whether the reference is of another size than pictures of `size`.
     pub fn is_of_another_size(&self, size: UVec2) -> bool {
         self.loaded.as_ref().is_some_and(|loaded| loaded.reference.matches(size).is_err())
     }
@@ -271,7 +272,7 @@ impl MeasuredReference {
         Some(measured.errors.as_slice()).filter(|errors| !errors.is_empty())
     }
 
-    /// How the errors of A and of B went down.
+    /// Histories of the errors of A and of B.
     pub fn histories(&self, measure: Measure) -> [&NoiseHistory; 2] {
         let index = usize::from(measure == Measure::Flip);
         self.histories.each_ref().map(|side| &side[index])
@@ -297,7 +298,7 @@ impl MeasuredReference {
         self.map.update(task, same, make, move || wake.request_repaint());
     }
 
-    /// That map, once it is there.
+    /// Map of a measure and a side, once it is made.
     pub fn map(&self, measure: Measure, side: Option<Side>) -> Option<&Map> {
         let (task, map) = self.map.done()?;
         map.as_ref().filter(|_| task.measure == measure && task.side == side)

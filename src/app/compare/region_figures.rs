@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::render::compare::{Comparison, SideFigures};
 use crate::render::{Area, Picture};
 
-/// One picture or those of A and B, and the region whose figures are wanted.
+/// Request for the figures of a region, of one picture or of A and B.
 #[derive(Clone)]
 pub struct RegionTask {
     /// The pictures.
@@ -30,7 +30,7 @@ pub struct RegionFigures {
     pub area: Area,
     /// The figures of the one picture, or of A and B.
     pub sides: Vec<SideFigures>,
-    /// How those two compare.
+    /// Comparison of A and B, where there are two pictures.
     pub comparison: Option<Comparison>,
 }
 

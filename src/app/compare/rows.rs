@@ -31,8 +31,8 @@ pub enum Asked {
     Size(UVec2),
 }
 
-/// Shows how A and B, the region and the reference are looked at and what is known of them; nothing
-/// where there is none of them. `pictures` are those that figures are told of, `live` the live one.
+/// Shows the view of A and B, the region and the reference with their figures; nothing where there
+/// is none of them. `pictures` are those that the figures are of, `live` the live one.
 pub fn show(
     ui: &mut Ui,
     compare: &mut CompareState,
@@ -130,7 +130,7 @@ fn region(
     }
 }
 
-/// Numbers to move and size it by; the rectangle that they say, where one was changed.
+/// Fields for the position and size of the region; the edited region, where one was changed.
 fn fields(ui: &mut Ui, area: Area, size: UVec2) -> Option<Area> {
     let mut numbers = [area.first.x, area.first.y, area.size.x, area.size.y];
     let room = size.saturating_sub(area.first);
@@ -210,8 +210,8 @@ fn reference(
         ui.label(RichText::new(text).color(color::WARNING));
         return take_size(ui, of).or(asked);
     }
-    if let Some(doubt) = loaded.doubt(settings) {
-        let text = format!("Errors mean little: {doubt}.");
+    if let Some(warning) = loaded.warning(settings) {
+        let text = format!("Errors mean little: {warning}.");
         ui.label(RichText::new(text).color(color::WARNING))
             .on_hover_text("The reference does not show what this picture shows.");
     }

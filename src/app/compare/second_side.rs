@@ -22,24 +22,24 @@ use crate::render::{Area, Layer, Picture};
 /// The key that shows the other side while it is held.
 pub const FLIP_KEY: Key = Key::H;
 
-/// How A and B are shown.
+/// Layout of A and B in the viewport.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum CompareLayout {
-    /// One over the other, with a divider.
+    /// Wipe: one over the other, with a divider.
     #[default]
     Wipe,
-    /// Beside each other.
+    /// Side by side.
     Beside,
-    /// How they differ.
+    /// Map of the differences of A and B.
     Difference(Difference),
-    /// How noisy they are.
+    /// Map of the noise of A or B, or of the ratio of both.
     Noise(Noise),
-    /// How far one of them is from the reference.
+    /// Map of the errors of one side against the reference.
     Error(Measure, Side),
 }
 
 impl CompareLayout {
-    /// One of each kind; the last one needs a reference.
+    /// One layout of each kind; the last one needs a reference.
     pub const ALL: [Self; 5] = [
         Self::Wipe,
         Self::Beside,
@@ -66,7 +66,7 @@ impl CompareLayout {
         kinds.get(next).or(kinds.first()).copied().unwrap_or_default()
     }
 
-    /// Its place among the kinds.
+    /// Index of the layout among the kinds.
     pub fn kind(self) -> usize {
         match self {
             Self::Wipe => 0,
@@ -77,7 +77,7 @@ impl CompareLayout {
         }
     }
 
-    /// The map that it needs of two pictures.
+    /// Map that the layout needs of two pictures.
     fn map(self) -> Option<MapKind> {
         match self {
             Self::Wipe | Self::Beside | Self::Error(..) => None,
@@ -87,43 +87,43 @@ impl CompareLayout {
     }
 }
 
-/// A picture kept earlier, as one side against the live one.
+/// A snapshot as one side against the live picture.
 #[derive(Clone, Debug)]
 pub struct StoredSide {
     /// The side.
     pub side: Side,
-    /// Its name.
+    /// Name of the snapshot.
     pub name: String,
     /// The picture with its variance, once it is read.
     pub picture: Option<Arc<Picture>>,
-    /// Whether its strategy was biased.
+    /// Whether the strategy of the snapshot was biased.
     pub is_biased: bool,
 }
 
-/// The second side and what is shown of both.
+/// The second side of a comparison and the view of both.
 pub struct SecondSide {
     second_render: Option<LiveRender>,
-    /// A picture kept earlier in place of the second side.
+    /// Snapshot in place of the second side.
     pub stored: Option<StoredSide>,
     /// The comparison of the last frame.
     last: Option<Compared>,
     /// The tokens of the two sessions while there are two.
-    seats: [TurnToken; 2],
+    tokens: [TurnToken; 2],
     threads: Option<usize>,
-    /// How both are shown.
+    /// Layout of both sides.
     pub layout: CompareLayout,
-    /// Where B begins, as a share of the picture area's width.
+    /// Left edge of B, as a share of the picture area's width.
     pub divider: f32,
     map: Background<BothPictures, Option<Map>>,
     figures: Background<[Arc<Picture>; 2], Comparison>,
     region_figures: Background<RegionTask, RegionFigures>,
-    /// How the noise of A and of B went down.
+    /// Histories of the noise of A and of B.
     histories: [NoiseHistory; 2],
     /// The side of the main engine when they were last added to.
     noted: Option<Side>,
 }
 
-/// Both pictures, and the map to make of them.
+/// Request for a map: both pictures and its kind.
 #[derive(Clone)]
 struct BothPictures {
     pictures: [Arc<Picture>; 2],
@@ -138,13 +138,13 @@ impl BothPictures {
 }
 
 impl SecondSide {
-    /// None yet; the second side will have `threads` workers, and `pool` makes maps and figures.
+    /// No second side yet; it will have `threads` workers, and `pool` makes maps and figures.
     pub fn new(threads: Option<usize>, pool: &BackgroundPool) -> Self {
         Self {
             second_render: None,
             stored: None,
             last: None,
-            seats: Sharing::tokens(),
+            tokens: Sharing::tokens(),
             threads,
             layout: CompareLayout::default(),
             divider: 0.5,
@@ -162,7 +162,7 @@ impl SecondSide {
         stored.or(self.last.map(|compared| compared.main))
     }
 
-    /// Whether there are two sides.
+    /// Whether there is a second side.
     pub fn is_on(&self) -> bool {
         self.second_render.is_some() || self.stored.is_some()
     }
@@ -180,42 +180,42 @@ impl SecondSide {
         }
     }
 
-    /// How many sides take turns at the machine, `main` being the engine of the main side.
+    /// Number of sides that share time slices, `main` being the engine of the main side.
     pub fn turns(&self, main: &LiveRender) -> usize {
         let is_at_work =
             |engine: &&LiveRender| engine.picture().is_none_or(|picture| !picture.stats.finished);
         std::iter::once(main).chain(self.second_render()).filter(is_at_work).count()
     }
 
-    /// Lets it wait for something else, or go on.
+    /// Lets the second side wait for something else, or go on.
     pub fn set_held(&mut self, held: bool) {
         if let Some(second_render) = &mut self.second_render {
             second_render.set_held(held);
         }
     }
 
-    /// Gives all its samples to the pixels of `area`, or to all pixels.
+    /// Gives all samples of the second side to the pixels of `area`, or to all pixels.
     pub fn focus(&mut self, area: Option<Area>) {
         if let Some(second_render) = &mut self.second_render {
             second_render.focus(area);
         }
     }
 
-    /// Lets its pictures bring a layer along.
+    /// Adds a layer to the pictures of the second side.
     pub fn set_layer(&mut self, layer: Option<Layer>) {
         if let Some(second_render) = &mut self.second_render {
             second_render.set_layer(layer);
         }
     }
 
-    /// Throws its samples away.
+    /// Discards the samples of the second side.
     pub fn restart(&mut self) {
         if let Some(second_render) = &mut self.second_render {
             second_render.restart();
         }
     }
 
-    /// Takes in what its threads have done.
+    /// Takes in what the threads of the second side have done.
     pub fn poll(&mut self) -> Vec<News> {
         self.second_render.as_mut().map_or_else(Vec::new, LiveRender::poll)
     }
@@ -246,11 +246,11 @@ impl SecondSide {
             let wake = ctx.clone();
             let second_render =
                 engine.second_render(self.threads, move || wake.request_repaint())?;
-            second_render.session().take_turns_by(Some(self.seats[1].clone()));
-            engine.session().take_turns_by(Some(self.seats[0].clone()));
+            second_render.session().take_turns_by(Some(self.tokens[1].clone()));
+            engine.session().take_turns_by(Some(self.tokens[0].clone()));
             self.second_render = Some(second_render);
         }
-        self.seats[0].set_share(compared.share);
+        self.tokens[0].set_share(compared.share);
         let settings = document.settings_of(compared.main.other());
         if let Some(second_render) = &mut self.second_render {
             second_render.set_shows_variance(true);
@@ -295,7 +295,7 @@ impl SecondSide {
         let pictures =
             self.pictures(engine).filter(|pictures| pictures[0].size == pictures[1].size);
         self.note(pictures.as_ref());
-        // Before every pixel has a sample there is nothing to say, and to look would take time from
+        // Before every pixel has a sample there is nothing to say, and trying would take time from
         // getting there.
         let pictures = pictures.filter(|sides| sides.iter().all(|picture| picture.complete));
         let same = |a: &[Arc<Picture>; 2], b: &[Arc<Picture>; 2]| {
@@ -349,7 +349,7 @@ impl SecondSide {
         self.figures.done().map(|(_, comparison)| comparison)
     }
 
-    /// How the noise of A and of B went down.
+    /// Histories of the noise of A and of B.
     pub fn histories(&self) -> &[NoiseHistory; 2] {
         &self.histories
     }

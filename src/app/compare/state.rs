@@ -21,7 +21,7 @@ pub struct CompareState {
     pub second_side: SecondSide,
     /// The reference and the errors against it.
     pub reference: MeasuredReference,
-    /// The region that figures are told of.
+    /// Region that the figures are of.
     pub region: PictureRegion,
     /// The side of the snapshot shown, while that is compared with the live picture.
     pub versus: Option<Side>,
@@ -34,7 +34,7 @@ impl CompareState {
         versus.or(document.compared.map(|compared| compared.active))
     }
 
-    /// Which sides are biased.
+    /// Whether A and B are biased.
     pub fn biased(&self, document: &Document) -> [bool; 2] {
         [Side::A, Side::B].map(|side| panel::is_biased(side, document, &self.second_side))
     }

@@ -29,11 +29,11 @@ pub enum CellValue {
 /// A cell in the world.
 #[derive(Clone, Debug)]
 pub struct Cell {
-    /// Its corners, numbered by the bits x, y, z.
+    /// Corners of the cell, numbered by the bits x, y, z.
     pub corners: [Vec3A; 8],
-    /// The edge of a cube of its volume.
+    /// Edge of the cube of the cell's volume.
     pub edge: f32,
-    /// The value that it is colored by.
+    /// Value that the cell is colored by.
     pub value: f32,
 }
 
@@ -49,7 +49,7 @@ impl Cell {
         Self { corners, edge: volume.cbrt() as f32, value }
     }
 
-    /// Its middle.
+    /// Middle of the cell.
     pub fn center(&self) -> Vec3A {
         0.5 * (self.corners[0] + self.corners[7])
     }
@@ -58,9 +58,9 @@ impl Cell {
 /// The cells of a scene that have a value, as far as they are drawn.
 #[derive(Clone, Debug, Default)]
 pub struct Cells {
-    /// The strongest, the weakest of them first.
+    /// The strongest cells, in ascending order.
     pub strongest: Vec<Cell>,
-    /// How many have a value.
+    /// Number of cells that have a value.
     pub total: usize,
 }
 
@@ -89,7 +89,7 @@ impl Cells {
         Self { strongest, total: sieve.total }
     }
 
-    /// The scale from the weakest to the strongest of them; none without cells.
+    /// Scale from the weakest to the strongest cell; `None` without cells.
     pub fn scale(&self) -> Option<Scale> {
         let (first, last) = (self.strongest.first()?, self.strongest.last()?);
         Some(Scale::exact([first.value, last.value]))
@@ -123,13 +123,13 @@ fn visit(instance: &Instance, value: CellValue, mut found: impl FnMut(&Aabb, f32
 #[derive(Default)]
 struct Sieve<'a> {
     kept: Vec<Candidate<'a>>,
-    /// The value that a candidate must exceed once enough are kept.
+    /// The value that a candidate must exceed once there are enough.
     threshold: f32,
     total: usize,
 }
 
 struct Candidate<'a> {
-    /// The instance in whose space it is given; the world's if none.
+    /// The instance in whose space the cell is given; the world's if `None`.
     instance: Option<&'a Instance>,
     local: Aabb,
     value: f32,

@@ -7,15 +7,15 @@ use crate::transport::profile::ProfileRow;
 
 /// A curve as the legend explains it.
 pub struct RayCurve {
-    /// Its name.
+    /// Name of the curve.
     pub name: &'static str,
-    /// The unit of its values.
+    /// Unit of the values.
     pub unit: &'static str,
-    /// Its meaning.
+    /// Meaning of the curve.
     pub help: &'static str,
-    /// Its color.
+    /// Color of the curve.
     pub color: Color32,
-    /// Its value in a row.
+    /// Value of the curve in a row.
     pub value: fn(&ProfileRow) -> f32,
 }
 
@@ -58,7 +58,7 @@ pub const SHARES: [RayCurve; 4] = [
         unit: "radiance/length",
         help: "ε: the radiance that the medium emits per unit length. The curve is relative to its \
                peak.",
-        color: color::CURVE_GLOW,
+        color: color::CURVE_EMISSION,
         value: |row| row.emission,
     },
     RayCurve {

@@ -17,14 +17,14 @@ use crate::render::Layer;
 const SIZE: egui::Vec2 = vec2(236.0, 82.0);
 /// Height of the ramp.
 const BAR: f32 = 8.0;
-/// How much of the picture shows through.
+/// Opacity of the background over the picture.
 const OPACITY: f32 = 0.85;
 
-/// One ramp with its numbers.
+/// A legend: a ramp with its numbers.
 pub struct Legend {
     /// The quantity, with its unit.
     pub title: &'static str,
-    /// Their colors, where there are any.
+    /// Colors of the ramp, where there are any.
     pub colors: Option<ColorKey>,
     /// A remark below the numbers.
     pub note: String,

@@ -10,15 +10,15 @@ use crate::app::picture::view::View;
 use crate::image::ramp::{STOPS, Scale};
 use crate::transport::camera::Camera;
 
-/// Up to this many cells are drawn as boxes.
+/// Largest number of cells that are drawn as boxes.
 const MOST_BOXES: usize = 128;
-/// Width of their edges in points.
+/// Width of the edges of boxes in points.
 const LINE: f32 = 1.2;
 /// Share of a cell's width that its dot takes.
 const DOT: f32 = 0.22;
 /// Sides of the smallest and the largest dot in points.
 const DOT_SIDES: [f32; 2] = [1.5, 10.0];
-/// How much of the picture a dot covers.
+/// Opacity of dots over the picture.
 const DOT_OPACITY: f32 = 0.8;
 /// Lines nearer to the camera than this share of a cell's edge are cut off.
 const NEAR: f32 = 1e-4;
@@ -89,7 +89,7 @@ impl OverlayCanvas<'_> {
         }
     }
 
-    /// Where a point in front of the camera, in its view, lies in the window.
+    /// Position in the window of a point in front of the camera, in its view.
     fn window(&self, point: Vec3A) -> egui::Pos2 {
         self.view.window_at(self.camera.film_from_view(self.size, point))
     }

@@ -10,9 +10,9 @@ use crate::transport::profile::ProfileRow;
 
 /// Width of a plot in points, and its height without the axis below.
 const SIZE: egui::Vec2 = egui::vec2(290.0, 112.0);
-/// Room of the numbers beside it.
+/// Room for the numbers beside a plot.
 const AXIS: f32 = 52.0;
-/// Room of the numbers below it, and of the name below those.
+/// Room for the numbers below a plot, and for the name below those.
 const BELOW: [f32; 2] = [18.0, 20.0];
 /// Distances of grid lines in points, from where they begin to show to where they do in full.
 const GRID: std::ops::RangeInclusive<f32> = 12.0..=30.0;

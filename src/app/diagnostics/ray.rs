@@ -47,7 +47,7 @@ impl RayScene {
             && self.size == other.size
     }
 
-    /// Looks into the ray; `known` is the frame of the same picture, if there is one.
+    /// Profile of the ray; `known` is the frame of the same picture, if there is one.
     fn found(&self, known: Option<Arc<PreparedFrame>>) -> Option<Found> {
         let Self { scene, probes, size, .. } = self;
         let make = || {
@@ -66,15 +66,15 @@ impl RayScene {
 
 /// The findings along a ray.
 struct Found {
-    /// Kept for the next ray of the same picture: what pays in it takes a while to find out.
+    /// Frame for the next ray of the same picture, since its pilot takes a while.
     frame: Arc<PreparedFrame>,
-    /// None where the ray meets no medium.
+    /// Profile of the ray; `None` where it meets no medium.
     profile: Option<Profile>,
 }
 
-/// The picked pixel and what is known of its ray.
+/// The ray inspector: the picked pixel and the profile of its ray.
 pub struct Inspector {
-    /// Where in the picture, in shares of its sides.
+    /// Picked position in the picture, in shares of its sides.
     picked: Option<Vec2>,
     profile: Background<RayScene, Option<Found>>,
     /// The distance whose values are read.
@@ -82,7 +82,7 @@ pub struct Inspector {
 }
 
 impl Inspector {
-    /// No pixel is picked yet; `pool` will look into rays.
+    /// An inspector without a pixel; `pool` will compute profiles.
     pub fn new(pool: &BackgroundPool) -> Self {
         Self { picked: None, profile: Background::new(pool), at: None }
     }
@@ -166,7 +166,7 @@ impl Inspector {
     }
 }
 
-/// The distance where most is drawn, or else most glows.
+/// Distance at which the pdf of distances is largest, or else the emission.
 fn most_telling(rows: &[ProfileRow]) -> f32 {
     let by = |value: fn(&ProfileRow) -> f32| {
         let most = rows.iter().max_by(|a, b| value(a).total_cmp(&value(b)));

@@ -8,12 +8,12 @@ use crate::render::turns::Share;
 use crate::scene::{Settings, tidy};
 use crate::transport::strategy::{Preset, Strategy, Tracker};
 
-/// Everything that an edit changes and undo brings back.
+/// The document: everything that an edit changes and undo brings back.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Document {
     /// The scene, as a scene file holds it.
     pub settings: Settings,
-    /// How the picture is shown.
+    /// Tone mapping of the picture.
     pub tone: Tone,
     /// Whether the film keeps `settings.film.size` instead of the viewport's own size.
     pub keep_size: bool,
@@ -21,7 +21,7 @@ pub struct Document {
     pub compared: Option<Compared>,
 }
 
-/// One of two strategies on the same scene.
+/// Side of a comparison of two strategies on the same scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Side {
     /// The left one.
@@ -32,7 +32,7 @@ pub enum Side {
 }
 
 impl Side {
-    /// The other one.
+    /// The other side.
     pub fn other(self) -> Self {
         match self {
             Self::A => Self::B,
@@ -115,7 +115,7 @@ impl Document {
     }
 }
 
-/// From the seed of A to that of B, where B has its own.
+/// Offset from the seed of A to that of B, where B has its own.
 const OTHER_SEED: u64 = 1 << 32;
 
 /// The name of a strategy.
@@ -163,7 +163,7 @@ impl Editor {
     }
 
     /// Starts a frame, before anything may change the document. While the pointer is held or the
-    /// wheel keeps turning, changes belong to one gesture.
+    /// wheel moves on, changes belong to one gesture.
     pub fn begin_frame(&mut self, ctx: &egui::Context) {
         let (held, wheel) = ctx.input(|input| {
             let wheel = input.smooth_scroll_delta() != egui::Vec2::ZERO;

@@ -1,9 +1,9 @@
 //! Undo and redo: whole states with the names of the edits between them.
 
-/// How many edits can be taken back.
+/// Number of edits that can be taken back.
 const LIMIT: usize = 200;
 
-/// One continuous action of the hand, such as a drag: its changes undo as one.
+/// A continuous action of the user, such as a drag: its changes undo as one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Gesture(pub u64);
 
@@ -18,7 +18,7 @@ pub struct History<T> {
 struct UndoStep<T> {
     name: String,
     gesture: Gesture,
-    /// The state on the other side of the edit.
+    /// State on the other side of the edit.
     state: T,
 }
 

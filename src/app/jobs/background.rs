@@ -37,7 +37,7 @@ pub struct Background<S, T> {
 }
 
 impl<S: Send + 'static, T: Send + 'static> Background<S, T> {
-    /// Nothing yet; values will be made on `pool`.
+    /// No value yet; values will be made on `pool`.
     pub fn new(pool: &BackgroundPool) -> Self {
         Self { pool: pool.clone(), done: None, under_way: None }
     }

@@ -6,25 +6,25 @@ use std::time::{Duration, Instant};
 
 use crate::app::command::Command;
 
-/// The purpose of a path that is asked for.
+/// Purpose of a path that the user is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Purpose {
-    /// To open a scene, a volume or a snapshot.
+    /// A scene, a volume or a snapshot to open.
     Open,
-    /// To save the linear picture with its layers.
+    /// A file for the linear picture with its layers.
     SaveExr,
-    /// To save the picture as shown.
+    /// A file for the picture as shown.
     SavePng,
-    /// To save the settings.
+    /// A file for the settings.
     SaveScene,
-    /// To measure against a picture.
+    /// A reference to measure against.
     Reference,
-    /// To save a comparison as shown, with its figures.
+    /// A file for a comparison as shown, with its figures.
     SaveComparison,
 }
 
 impl Purpose {
-    /// The command that asks for it, whose text is its title.
+    /// Command with this purpose, whose text is the title of the dialog.
     pub fn command(self) -> Command {
         match self {
             Self::Open => Command::Open,
@@ -63,10 +63,10 @@ impl Purpose {
     }
 }
 
-/// How paths are asked for.
+/// Kind of the dialogs that ask for paths.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Dialogs {
-    /// By the desktop's dialog; typed where there is none.
+    /// Dialogs of the desktop; typed paths where there are none.
     #[default]
     System,
     /// Typed in the window.

@@ -9,7 +9,7 @@ use crate::render::Film;
 use crate::scene::{self, Settings};
 use crate::transport::PATH_VERSION;
 
-/// The film, once the session has copied it; `path` is what it is wanted for.
+/// The film, once the session has copied it; `path` is the file that it is written to.
 pub fn receive(path: &Path, film: &mpsc::Receiver<Film>) -> Result<Film> {
     film.recv().map_err(|_| {
         let reason = "there is no picture to save, or not enough memory to copy it";

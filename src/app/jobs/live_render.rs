@@ -18,20 +18,21 @@ use crate::scene::{Note, Settings, VolumeCache};
 use crate::transport::Scene;
 use crate::transport::probes::Probes;
 
-/// A build that takes longer than this gives way to the next edit, and shows how far it is.
+/// Time after which a build gives way to the next edit, and shows its progress.
 const PATIENCE: Duration = Duration::from_millis(250);
 
 /// An event since the last frame.
 pub enum News {
     /// A file was opened.
     Opened {
-        /// Where it came from, as the user named it.
+        /// Name of the source, as the user gave it.
         source: String,
-        /// Its scene.
+        /// Settings of the scene.
         settings: Box<Settings>,
         /// The guesses made for a bare volume.
         notes: Vec<Note>,
-        /// How it goes on, where it was a snapshot, which keeps the size of its film.
+        /// Notice on how a snapshot goes on, where one was opened, which keeps the size of its
+        /// film.
         reopened: Option<Notice>,
     },
     /// A file could not be opened, or a sample could not be taken.
@@ -40,7 +41,7 @@ pub enum News {
     Refused(String),
     /// The settings are built.
     Accepted,
-    /// A render was started or asked for; the number is its generation.
+    /// A render was started or requested; the number is its generation.
     Started(u64),
 }
 
@@ -61,25 +62,25 @@ pub struct LiveRender {
     refused: Option<Settings>,
     started: Option<Started>,
     generation: u64,
-    /// The latest generation whose failure was told.
+    /// Latest generation whose failure was reported.
     failed: u64,
     paused: bool,
-    /// Whether it waits for something else that needs the machine.
+    /// Whether the render waits for something else that needs the machine.
     held: bool,
     extras: Extras,
     /// The pixels that get all samples.
     area: Option<Area>,
-    /// Whether what was built is another engine's.
+    /// Whether the scene was built by another engine.
     is_fresh: bool,
     picture: Option<Arc<Picture>>,
-    /// The samples of what was opened last, until its render starts.
+    /// Samples of the snapshot that was opened last, until its render starts.
     resume: Option<Resume>,
 }
 
 /// The render under way.
 struct Started {
     scene: Arc<Scene>,
-    /// The settings that it was built from, with the film's own size.
+    /// Settings that the render was built from, with the film's own size.
     settings: Settings,
     generation: u64,
 }
@@ -103,8 +104,8 @@ impl LiveRender {
         Self::with_cache(session, threads, Arc::default(), wake)
     }
 
-    /// Another engine for the same scene under another strategy. It shows nothing until it has
-    /// built that.
+    /// Another engine for the same scene under another strategy. The engine shows nothing until it
+    /// has built that.
     pub fn second_render(
         &self,
         threads: Option<usize>,
@@ -203,17 +204,17 @@ impl LiveRender {
         &self.grids
     }
 
-    /// The session, for snapshots of its film.
+    /// The session of the render, for snapshots of its film.
     pub fn session(&self) -> &Session {
         &self.session
     }
 
-    /// The settings of the session's film: those that it was built from, with its own size.
+    /// Settings that the session's film was built from, with its own size.
     pub fn rendered(&self) -> Option<&Settings> {
         self.started.as_ref().map(|started| &started.settings)
     }
 
-    /// Whether that is the scene of these settings, on whatever film.
+    /// Whether the render is of the scene of these settings, on whatever film.
     pub fn renders(&self, settings: &Settings) -> bool {
         self.rendered().is_some_and(|rendered| same_scene(rendered, settings))
     }
@@ -229,12 +230,12 @@ impl LiveRender {
         self.session.set_paused(paused || self.held);
     }
 
-    /// Whether it waits for something else that needs the machine.
+    /// Whether the render waits for something else that needs the machine.
     pub fn held(&self) -> bool {
         self.held
     }
 
-    /// Lets it wait for something else, or go on unless it is paused.
+    /// Lets the render wait for something else, or go on unless it is paused.
     pub fn set_held(&mut self, held: bool) {
         if self.held != held {
             self.held = held;
@@ -427,7 +428,7 @@ fn same_scene(a: &Settings, b: &Settings) -> bool {
     same_shot(a, b) && a.strategy == b.strategy
 }
 
-/// Whether two settings show the same: all but the film and the strategy decides.
+/// Whether two settings show the same picture: all but the film and the strategy decides.
 pub fn same_shot(a: &Settings, b: &Settings) -> bool {
     a.camera == b.camera && same_matter(a, b)
 }

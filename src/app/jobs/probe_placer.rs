@@ -1,6 +1,6 @@
 //! Starts renders, and places their probes meanwhile on a thread of its own, so that no picture
 //! waits for them: a render whose probes are not there yet begins without and starts over when they
-//! are. Probes are kept while what they are made from stays the same, whatever the camera does.
+//! are. Probes are reused while what they are made from stays the same, whatever the camera does.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -207,7 +207,7 @@ fn same_places(a: &BuiltScene, b: &BuiltScene) -> bool {
     // probes, the volumes are compared as they were built, and the strategy by its recipe.
     let Settings { camera, film: _, path, environment, volume: _, light, surface, strategy: _ } =
         &a.settings;
-    // Where the camera looks does not matter.
+    // The target of the camera does not matter.
     let CameraSettings { position, target: _, up: _, fov_x: _ } = camera;
     *environment == b.settings.environment
         && *path == b.settings.path

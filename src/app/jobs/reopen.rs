@@ -10,11 +10,11 @@ use crate::render::estimate::samples_per_pixel;
 use crate::render::{Film, Resume};
 use crate::scene::{self, Settings};
 
-/// How the render of a reopened snapshot goes on.
+/// A reopened snapshot: its film and a notice.
 pub struct Reopened {
-    /// The samples that it goes on from; none where it is rendered anew.
+    /// Samples that the render goes on from; `None` where it starts anew.
     pub resume: Option<Resume>,
-    /// How it goes on in words, to be put behind its name.
+    /// Notice on how the render goes on, put behind the name of the snapshot.
     pub notice: Notice,
 }
 

@@ -39,7 +39,7 @@ pub struct LoadOutcome {
     pub result: Result<BuiltScene>,
     /// The render that was started, if one was asked for and the scene could be built.
     pub started: Option<RenderStart>,
-    /// How it goes on, where a snapshot was opened.
+    /// Continuation of a snapshot, where one was opened.
     pub reopened: Option<Reopened>,
 }
 
@@ -169,7 +169,7 @@ fn work(
         on_news();
         let Some(settings) = settings else { continue };
         let still_latest = |_: f32| is_latest();
-        // What fails here is told when the grid is asked for.
+        // A failure here is reported when the grid is asked for.
         if let Ok(true) = add_missing(&mut grids, &settings, cache, &still_latest) {
             let _ = reports.send(LoadReport::Grids(Arc::new(grids.clone())));
             on_news();

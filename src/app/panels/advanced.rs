@@ -7,7 +7,7 @@ use crate::app::ui::theme::space;
 use crate::app::ui::widgets::{Number, capitalized, choice, choice_but, key_help};
 use crate::transport::strategy::{Advanced, BoostMode, Strategy, Tracker};
 
-/// Shows them. A setting that its toggle does not use is dimmed.
+/// Shows the advanced settings. A setting that its toggle does not use is dimmed.
 pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
     let opened = panel.editor.opened().settings.strategy.advanced;
     let strategy = &mut panel.editor.document.settings.strategy;
@@ -143,7 +143,7 @@ fn guided_scattering(
     });
 }
 
-/// How smoke is walked through: to lamps, and to where light scatters.
+/// Rows for the trackers and estimators in smoke: towards lamps, and for distances.
 fn walks(ui: &mut Ui, strategy: &mut Strategy, edit: &mut Option<&'static str>) {
     let estimator = &mut strategy.advanced.transmittance;
     if choice(ui, "Shadow rays", "strategy.advanced.transmittance", estimator) {

@@ -175,7 +175,7 @@ fn blackbody(
     edit.or(times_density(ui, emission))
 }
 
-/// How the brightness depends on the temperature.
+/// Rows for the dependence of brightness on temperature.
 fn brightness(
     ui: &mut Ui,
     emission: &mut EmissionSettings,

@@ -41,7 +41,7 @@ pub fn show(
     edit
 }
 
-/// A click on what a grid glows by already puts its glow out.
+/// Gives the grid a role; a click on the role of emission that it already has ends the emission.
 fn take_or_give(role: Role, volume: &mut VolumeSettings, grid: &GridDescription) {
     if !role.is_of(volume, &grid.name) {
         role.give(volume, grid);

@@ -139,7 +139,7 @@ fn name_of(kind: LightKind) -> &'static str {
     KINDS.iter().find(|(other, ..)| *other == kind).map_or("Light", |(_, name, _)| name)
 }
 
-/// How bright it is.
+/// Brightness of a light in words.
 fn brightness(light: &LightSettings) -> String {
     let number = significant(strength(light.intensity).into());
     match light.kind {
@@ -215,7 +215,7 @@ fn changed_kind(light: &LightSettings, camera: &CameraSettings) -> LightSettings
     fresh
 }
 
-/// Where it stands or comes from.
+/// Rows for the position or the direction of a light.
 fn place(
     ui: &mut Ui,
     light: &mut LightSettings,
@@ -265,7 +265,7 @@ fn place(
     changed.then_some("place of a light")
 }
 
-/// How large or wide it is.
+/// Rows for the size or the angle of a light.
 fn shape(ui: &mut Ui, light: &mut LightSettings, reset: &LightSettings) -> Option<&'static str> {
     let number = |name, key, most: f32, unit, reset| Number {
         name,

@@ -2,7 +2,7 @@
 //!
 //! - `column`: the column that they stand in.
 //! - `strategy`, `advanced`: toggles and presets, and what is behind them.
-//! - `volume`, `grids`, `emission`, `ramp`, `placement`: a volume, its grids, glow and place.
+//! - `volume`, `grids`, `emission`, `ramp`, `placement`: a volume, its grids, emission and place.
 //! - `lights`, `surfaces`, `camera`, `film`, `display`: the rest of the scene and of the view.
 
 pub mod advanced;
@@ -44,9 +44,9 @@ pub struct Panel<'a> {
     pub bounds: Aabb,
     /// The light whose keys and handles are shown.
     pub selected_light: &'a mut Option<usize>,
-    /// How often probes are asked in the picture, relative to what they propose, if that is known.
+    /// Guided flights of a camera ray, relative to those that the probes propose, if that is known.
     pub guided_flights: Option<f32>,
-    /// The other side of a comparison.
+    /// Second side of a comparison.
     pub second_side: &'a SecondSide,
     /// The reference and the errors against it.
     pub reference: &'a mut MeasuredReference,

@@ -1,4 +1,4 @@
-//! Where a volume stands, and the measures of one that is a shape.
+//! Placement of a volume, and the measures of one that is a shape.
 
 use egui::{DragValue, Ui, vec2};
 

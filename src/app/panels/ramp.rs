@@ -17,7 +17,7 @@ use crate::scene::settings::Color;
 const KEY: &str = "volume.N.emission.stops";
 /// Colors across the ramp that are drawn; linear in between.
 const SAMPLES: u16 = 64;
-/// How far an arrow key moves a stop, as a share of the ramp.
+/// Step of an arrow key for a stop, as a share of the ramp.
 const NUDGE: f32 = 0.01;
 /// The share of the ramp's height that the histogram behind it takes.
 const BARS: f32 = 0.4;
@@ -53,7 +53,8 @@ fn span(stops: &[Stop], voxels: Option<&VoxelDescription>) -> RangeInclusive<f32
     low..=if high > low { high } else { low + 1.0 }
 }
 
-/// The same, but as it was while a stop is dragged: it must not follow the hand.
+/// The values that the ramp is drawn over, unchanged while a stop is dragged: the ramp must not
+/// move under the pointer.
 fn steady_span(
     ui: &Ui,
     memory: Id,

@@ -150,7 +150,7 @@ fn buttons(ui: &mut Ui, surfaces: &mut Vec<SurfaceSettings>, index: usize) -> Op
     edit
 }
 
-/// Shape, place, material and glow; the name of the edit if anything changed.
+/// Rows for shape, place, material and emission; the name of the edit if anything changed.
 fn keys(
     ui: &mut Ui,
     surface: &mut SurfaceSettings,
@@ -226,7 +226,7 @@ fn place(
     changed.then_some("place of a surface")
 }
 
-/// How large it is; whether that changed.
+/// Rows for the measures of a surface; whether one changed.
 fn measures(
     ui: &mut Ui,
     surface: &mut SurfaceSettings,

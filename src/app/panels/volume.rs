@@ -101,7 +101,7 @@ fn up_axis_row(
     Some("up axis")
 }
 
-/// One click for all that a program's files have in common.
+/// Buttons that set everything that a program's files have in common.
 fn programs(
     ui: &mut Ui,
     settings: &mut Settings,
@@ -135,7 +135,7 @@ fn programs(
     Some("export conventions")
 }
 
-/// Whether what was guessed still stands.
+/// Whether a guess still holds.
 fn stands(note: &Note, volume: &VolumeSettings, opened: &VolumeSettings) -> bool {
     match note.about {
         About::UpAxis => volume.rotate == opened.rotate,

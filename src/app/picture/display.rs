@@ -52,7 +52,7 @@ struct Upload {
 }
 
 impl Upload {
-    /// One texel a block of `picture`, row by row.
+    /// Texels of `picture`, one per block, row by row.
     fn texels(self, picture: &Picture) -> Cow<'_, [u8]> {
         let Some(tone) = self.coded else {
             return match self.source {
@@ -70,7 +70,7 @@ impl Upload {
     }
 }
 
-/// One of the `values` of all pixels for each block.
+/// The value of each block among the `values` of all pixels.
 fn blocks<'a, T: bytemuck::NoUninit>(picture: &Picture, values: &'a [T]) -> Cow<'a, [u8]> {
     if picture.block_log2 == 0 {
         return Cow::Borrowed(bytemuck::cast_slice(values));
@@ -92,7 +92,7 @@ struct Display {
     panes: [GpuPane; PANES],
 }
 
-/// A picture on the graphics card and how it is looked at.
+/// A picture on the graphics card and its view.
 struct GpuPane {
     view: wgpu::Buffer,
     shown: Option<UploadedPicture>,
@@ -129,19 +129,19 @@ pub fn largest_size(state: &RenderState) -> u32 {
     state.device.limits().max_texture_dimension_2d
 }
 
-/// A picture and where it is to be shown.
+/// A picture and its place in the window.
 pub struct Shot {
     /// The picture.
     pub picture: Arc<Picture>,
-    /// The data of it that is shown, and how.
+    /// Look of the picture.
     pub look: Look,
-    /// Where it lies, from the corner of `area`.
+    /// Placement of the picture, from the corner of `area`.
     pub placement: Placement,
-    /// The part of the window that it is laid out in, in points.
+    /// Part of the window that the picture is laid out in, in points.
     pub area: egui::Rect,
     /// The part of that which is seen.
     pub clip: egui::Rect,
-    /// Which of the pictures shown at once it is, below [`PANES`].
+    /// Index of the pane among the pictures shown at once, below [`PANES`].
     pub pane: usize,
 }
 
@@ -196,8 +196,8 @@ impl CallbackTrait for Shot {
 }
 
 impl Shot {
-    /// How the picture is coded before it is drawn, if it is. Codes are not for canvases that code
-    /// by themselves, nor to draw lines on.
+    /// Tone that codes the picture before it is drawn, if one does. Codes are not for canvases that
+    /// code by themselves, nor for drawing lines on.
     fn coded(&self, canvas: wgpu::TextureFormat) -> Option<Tone> {
         let (Look::Picture(tone) | Look::Light(tone)) = self.look else { return None };
         let is_plain = !canvas.is_srgb() && !pipelines::has_grid(1.0 / self.placement.scale);

@@ -17,9 +17,9 @@ use crate::scene::settings::LightSettings;
 use figure::{Figure, Handle, HandlePart};
 use lens::Lens;
 
-/// Reach of the hand around a handle, in points.
+/// Radius around a handle in which a press takes it, in points.
 const REACH: f32 = 9.0;
-/// How far an arrow key moves a handle that has the focus, in points.
+/// Step of an arrow key for a handle that has the focus, in points.
 const NUDGE: f32 = 8.0;
 /// Radius of the dot of a handle, in points.
 const DOT: f32 = 4.0;
@@ -27,17 +27,17 @@ const DOT: f32 = 4.0;
 /// The light that is selected and the grip on one of its handles.
 #[derive(Default)]
 pub struct Gizmo {
-    /// Which light has handles; none is drawn otherwise.
+    /// Index of the light that has handles; none are drawn otherwise.
     pub selected: Option<usize>,
     grip: Option<Grip>,
 }
 
-/// A handle in the hand.
+/// A handle that is being dragged.
 struct Grip {
     handle: Handle,
     /// The light as it was when the drag began.
     light: LightSettings,
-    /// Where the drag began.
+    /// Position where the drag began.
     from: Pos2,
 }
 
@@ -119,7 +119,7 @@ impl Gizmo {
         }
     }
 
-    /// The light as the hand has moved it.
+    /// The light as it has been dragged.
     fn pull(&self, ui: &Ui, lens: &Lens, pivot: Vec3A) -> Option<LightSettings> {
         let Grip { handle, light, from } = self.grip.as_ref()?;
         let to = ui.input(|input| input.pointer.latest_pos())?;

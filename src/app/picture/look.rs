@@ -1,4 +1,4 @@
-//! Which data of a picture is shown, and how.
+//! Display of a picture: its light or one of its layers, with a tone or a scale.
 
 use crate::image::ramp::Scale;
 use crate::image::tone::Tone;
@@ -7,22 +7,22 @@ use crate::render::Picture;
 /// The data of a picture that is shown, and how.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Look {
-    /// Its light, exposed and curved.
+    /// The light of the picture, exposed and curved.
     Picture(Tone),
-    /// A layer of light in its place.
+    /// A layer of light in place of the picture.
     Light(Tone),
     /// A layer of numbers, on this scale.
     Numbers(Scale),
 }
 
-/// Which data of a picture is on the graphics card.
+/// Data of a picture on the graphics card.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TextureData {
     /// The linear light of the picture itself.
     Pixels,
-    /// The linear light of its layer.
+    /// The linear light of the picture's layer.
     Light,
-    /// The numbers of its layer.
+    /// The numbers of the picture's layer.
     Numbers,
 }
 

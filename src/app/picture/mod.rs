@@ -1,4 +1,4 @@
-//! The picture and the hand on it.
+//! The picture and the input on it: camera moves, zoom, handles, regions.
 //!
 //! - `viewport`: input on the picture; `view`: where it lies in the window; `zoom`: its layout.
 //! - `navigation`: camera moves; `gizmo`: handles of a light; `region`: a part of the picture.

@@ -2,7 +2,7 @@
 
 use glam::{Quat, Vec2, Vec3};
 
-/// Where the camera stands and what it looks at, in world space.
+/// Pose of the camera: its position and target in world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     /// The eye.

@@ -75,11 +75,11 @@ fn short(value: f32) -> String {
     }
 }
 
-/// Which color can be read on a pixel.
+/// Color of text that can be read on a pixel.
 enum Ink {
-    /// On light, as a tone shows it; of the layer or of the picture itself.
+    /// Text on light, as a tone shows it; of the layer or of the picture itself.
     Light(Encoder, bool),
-    /// On the color of a number.
+    /// Text on the color of a number.
     Number(Scale),
 }
 

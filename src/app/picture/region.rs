@@ -1,4 +1,4 @@
-//! A rectangular region of the picture that figures are told of: drawn by hand, or typed.
+//! A region of the picture with figures of its own: drawn by hand, or typed.
 
 use egui::{CursorIcon, PointerButton, Rect, Response, Stroke, StrokeKind, Ui};
 use glam::{UVec2, Vec2};
@@ -7,43 +7,43 @@ use super::view::View;
 use crate::app::ui::theme::color;
 use crate::render::Area;
 
-/// The region and the hand that draws it. No edit of the scene, so that undo leaves it alone.
+/// The region and the drag that draws it. No edit of the scene, so that undo leaves it alone.
 #[derive(Debug, Default)]
 pub struct PictureRegion {
-    /// Whether the next drag draws it.
+    /// Whether the next drag draws the region.
     armed: bool,
-    /// The area that it covers of a picture of this size.
+    /// The area that the region covers of a picture of this size.
     chosen: Option<(Area, UVec2)>,
-    /// Whether it gets all samples, and the rest of the picture none.
+    /// Whether the region gets all samples, and the rest of the picture none.
     pub is_alone: bool,
-    /// Where the drag under way began, in pixels of the picture that lies there.
+    /// Start of the drag under way, in pixels of the picture that lies there.
     from: Option<(Vec2, View)>,
 }
 
 impl PictureRegion {
-    /// Lets the next drag on the picture draw it.
+    /// Lets the next drag on the picture draw the region.
     pub fn arm(&mut self) {
         self.armed = true;
     }
 
-    /// Whether the next drag draws it.
+    /// Whether the next drag draws the region.
     pub fn is_armed(&self) -> bool {
         self.armed
     }
 
-    /// Takes it away, or back that one is to be drawn. Whether there was anything of the kind.
+    /// Removes the region, or cancels drawing one. Whether there was anything to remove or cancel.
     pub fn remove(&mut self) -> bool {
         let was = self.armed || self.chosen.is_some();
         *self = Self::default();
         was
     }
 
-    /// Whether there is one.
+    /// Whether there is a region.
     pub fn is_set(&self) -> bool {
         self.chosen.is_some()
     }
 
-    /// Sets it on a picture of `size`.
+    /// Sets the region on a picture of `size`.
     pub fn set(&mut self, area: Area, size: UVec2) {
         let first = area.first.min(size.saturating_sub(UVec2::ONE));
         let area = Area { first, size: area.size.max(UVec2::ONE) }.within(size);
@@ -51,7 +51,7 @@ impl PictureRegion {
         self.armed = false;
     }
 
-    /// The area that it covers of a picture of `size`: the same part of every picture.
+    /// The area that the region covers of a picture of `size`: the same part of every picture.
     pub fn area(&self, size: UVec2) -> Option<Area> {
         let (area, of) = self.chosen?;
         if of == size {
@@ -69,8 +69,8 @@ impl PictureRegion {
         self.area(size).filter(|_| self.is_alone && self.from.is_none())
     }
 
-    /// Lets the hand draw it in the picture of `view`, which is under the pointer. Whether it takes
-    /// the drag, so that nobody else should.
+    /// Lets a drag draw the region in the picture of `view`, which is under the pointer. Whether it
+    /// takes the drag, so that nobody else should.
     pub fn draw(&mut self, ui: &Ui, response: &Response, view: Option<&View>) -> bool {
         if self.armed && response.hovered() {
             ui.set_cursor_icon(CursorIcon::Crosshair);
@@ -94,7 +94,7 @@ impl PictureRegion {
         true
     }
 
-    /// Draws it over the picture that lies in `view`.
+    /// Draws the region over the picture that lies in `view`.
     pub fn paint(&self, ui: &Ui, view: &View) {
         let Some(area) = self.area(view.size) else { return };
         let corners = [area.first, area.first + area.size];

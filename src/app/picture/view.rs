@@ -1,22 +1,22 @@
-//! Where the picture lies in the window.
+//! Place of the picture in the window.
 
 use egui::Rect;
 use glam::{UVec2, Vec2};
 
 use super::zoom::Placement;
 
-/// Where the picture lies in the window.
+/// Place of the picture in the window.
 #[derive(Clone, Copy, Debug)]
 pub struct View {
     /// The viewport, in points.
     pub rect: Rect,
-    /// How the picture lies in it, in framebuffer pixels.
+    /// Placement of the picture in the viewport, in framebuffer pixels.
     pub placement: Placement,
     /// Framebuffer pixels per point.
     pub factor: f32,
     /// Width and height of the picture.
     pub size: UVec2,
-    /// Whether the pointer is on it, and nothing in front.
+    /// Whether the pointer is on the picture, and nothing in front.
     pub hovered: bool,
     /// The pixel that was clicked in this frame.
     pub clicked: Option<UVec2>,
@@ -28,7 +28,7 @@ impl View {
         self.placement.picture_from_viewport(from_egui(at - self.rect.min) * self.factor)
     }
 
-    /// Where a picture position, in its pixels, lies in the window.
+    /// Position in the window of a point of the picture, given in its pixels.
     pub fn window_at(&self, at: Vec2) -> egui::Pos2 {
         let at = (self.placement.corner + at * self.placement.scale) / self.factor;
         self.rect.min + egui::vec2(at.x, at.y)

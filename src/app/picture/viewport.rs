@@ -1,4 +1,4 @@
-//! The picture and the hand on it: camera moves, zoom to pixels, the value under the pointer.
+//! The viewport: camera moves, zoom to pixels, the value under the pointer.
 
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -24,9 +24,9 @@ use crate::scene::settings::CameraSettings;
 const SETTLE: Duration = Duration::from_millis(120);
 /// Points of the wheel's travel that count as one notch.
 const NOTCH: f32 = 50.0;
-/// From this zoom on, the pixel under the pointer is outlined.
+/// Zoom from which on the pixel under the pointer is outlined.
 const OUTLINE_FROM: f32 = 8.0;
-/// How far an arrow key drags the picture, in widths of it.
+/// Step by which an arrow key drags the picture, in widths of it.
 const STEP: f32 = 0.02;
 /// The zoom of the zoom-to-pixels command.
 const PIXEL_ZOOM: f32 = 8.0;
@@ -49,7 +49,7 @@ pub enum Shown {
     Nothing,
     /// One picture.
     One(Arc<Picture>, Look),
-    /// Two of the same place, the second from this share of the width on.
+    /// Two pictures of the same view, the second from this share of the width on.
     Wipe([Arc<Picture>; 2], Look, f32),
     /// Two beside each other, zoomed and moved as one.
     Beside([Arc<Picture>; 2], Look),
@@ -66,7 +66,7 @@ struct ViewportPane<'p> {
 }
 
 impl Shown {
-    /// How it is looked at, where there is a picture.
+    /// Look of the picture, where there is one.
     pub fn look(&self) -> Option<Look> {
         match self {
             Self::Nothing => None,
@@ -103,7 +103,7 @@ impl Shown {
 /// The state of the viewport between frames.
 #[derive(Debug, Default)]
 pub struct Viewport {
-    /// How the picture is laid out.
+    /// Zoom of the picture.
     pub zoom: Zoom,
     /// The pixel under the pointer and its value.
     pub probe: Option<Probe>,
@@ -113,7 +113,7 @@ pub struct Viewport {
     settled: Option<UVec2>,
     /// The area of the last frame and since when it has been so.
     area: Option<(UVec2, Instant)>,
-    /// Where the pointer last was, in framebuffer pixels from the viewport's corner.
+    /// Last position of the pointer, in framebuffer pixels from the viewport's corner.
     pointer: Option<Vec2>,
     /// The viewport's size in framebuffer pixels.
     size: Vec2,
@@ -214,7 +214,7 @@ impl Viewport {
         views
     }
 
-    /// Where the picture of a pane lies.
+    /// Place of the picture of a pane.
     fn view(&self, pane: &ViewportPane<'_>, factor: f32) -> View {
         let size = pane.picture.size;
         let placement = self.zoom.place(size, self.size);
@@ -314,7 +314,7 @@ fn steer(ui: &Ui, response: &Response, editor: &mut Editor) {
     editor.name_edit(name);
 }
 
-/// Where the camera of these settings stands.
+/// Pose of the camera of these settings.
 pub fn pose(camera: &CameraSettings) -> Pose {
     Pose {
         position: Vec3::from_array(camera.position),

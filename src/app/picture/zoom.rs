@@ -1,5 +1,5 @@
-//! How the picture lies in the viewport: fitted, or zoomed to pixels. Pure geometry, in
-//! framebuffer pixels from the viewport's upper left corner.
+//! Zoom of the picture in the viewport: fitted, or in pixels. Pure geometry, in framebuffer pixels
+//! from the viewport's upper left corner.
 
 use glam::{UVec2, Vec2};
 
@@ -8,10 +8,10 @@ const MOST: f32 = 64.0;
 /// The narrowest.
 const LEAST: f32 = 1.0 / 16.0;
 
-/// How the picture is laid out.
+/// Zoom of the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Zoom {
-    /// All of it, in whole multiples of its pixels where there is room.
+    /// Fitted: the whole picture, in whole multiples of its pixels where there is room.
     #[default]
     Fit,
     /// Zoomed to pixels.
@@ -28,7 +28,7 @@ pub enum Zoom {
 pub struct Placement {
     /// Framebuffer pixels per picture pixel.
     pub scale: f32,
-    /// Where the picture's upper left corner lies in the viewport.
+    /// Position of the picture's upper left corner in the viewport.
     pub corner: Vec2,
 }
 

@@ -31,14 +31,14 @@ use crate::app::ui::theme;
 use crate::error::Result;
 use crate::scene::DEFAULT_SCENE;
 
-/// How the window is set up.
+/// Options of the window.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
     /// The scene, volume or snapshot to open first; `None`: the embedded default scene.
     pub source: Option<String>,
     /// Threads that sample; `None`: as many as fit.
     pub threads: Option<usize>,
-    /// How paths are asked for.
+    /// Kind of the dialogs that ask for paths.
     pub dialogs: Dialogs,
     /// Whether each frame begins in the color of the panels, so that they need not be painted.
     pub cleared: bool,
@@ -49,7 +49,8 @@ pub struct Options {
     pub data: Option<PathBuf>,
 }
 
-/// Everything behind the window. It needs a render state but no window, so tests can drive it.
+/// Everything behind the window. An `App` needs a render state but no window, so tests can drive
+/// it.
 pub struct App {
     pub(super) editor: Editor,
     pub(super) engine: LiveRender,
@@ -131,12 +132,12 @@ impl App {
         &self.engine
     }
 
-    /// The other side of a comparison.
+    /// Second side of the comparison.
     pub fn second_side(&self) -> &SecondSide {
         &self.compare.second_side
     }
 
-    /// The region that figures are told of.
+    /// Region that the figures are of.
     pub fn region(&self) -> &PictureRegion {
         &self.compare.region
     }
@@ -146,7 +147,7 @@ impl App {
         &self.compare.reference
     }
 
-    /// Every strategy tried on the shot.
+    /// Sweep of all strategies on the shot.
     pub fn sweep(&self) -> &Sweep {
         &self.sweep
     }

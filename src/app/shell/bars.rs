@@ -7,7 +7,7 @@ use egui::{Button, Key, ProgressBar, RichText, TextEdit, Ui};
 use crate::app::jobs::dialogs::Purpose;
 use crate::app::ui::theme::{color, space};
 
-/// Shows how far something is; whether it should be cancelled, which does what `help` says.
+/// Shows the progress of `what`; whether it should be cancelled, which does what `help` says.
 pub fn progress(ui: &mut Ui, what: &str, fraction: f32, help: &str) -> bool {
     ui.horizontal(|ui| {
         ui.label(RichText::new(what).color(color::TEXT_STRONG));
@@ -70,7 +70,7 @@ pub struct PathBar {
     /// The name of a file of which only the folder is typed.
     name: PathBuf,
     fresh: bool,
-    /// Whether the user was told that the file exists and will be replaced.
+    /// Whether the user was warned that the file exists and will be replaced.
     warned: bool,
 }
 

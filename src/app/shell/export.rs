@@ -20,15 +20,15 @@ use crate::math::Rgb;
 use crate::render::Area;
 use crate::render::Picture;
 
-/// Everything that is written.
+/// The view with its figures, as written to a file.
 pub struct SavedView {
     /// The pictures, as the viewport shows them.
     pub shown: Shown,
-    /// Their names, from left to right.
+    /// Names of the pictures, from left to right.
     pub names: Vec<String>,
     /// The legend of a map.
     pub legend: Option<Legend>,
-    /// The region that figures are told of.
+    /// Region that the figures are of.
     pub area: Option<Area>,
     /// Sentences below.
     pub words: Vec<String>,
@@ -37,7 +37,7 @@ pub struct SavedView {
 }
 
 impl SavedView {
-    /// Writes it as a PNG.
+    /// Writes the view as a PNG.
     ///
     /// # Errors
     /// When there is no picture, or the system refuses to write.

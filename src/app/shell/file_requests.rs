@@ -10,7 +10,7 @@ use crate::app::jobs::dialogs::{Dialog, DialogAnswer, Dialogs, Purpose};
 
 /// Paths that are asked for, files that were dropped, and saves under way.
 pub struct FileRequests {
-    /// How paths are asked for.
+    /// Kind of the dialogs that ask for paths.
     dialogs: Dialogs,
     /// The system dialog, while it is open.
     dialog: Option<Dialog>,
@@ -20,14 +20,14 @@ pub struct FileRequests {
     pub waiting: Vec<(Purpose, PathBuf)>,
     /// The snapshot that a path is being asked for, where one was shown.
     pub subject: Option<String>,
-    /// A dropped picture, until the user says what it is for.
+    /// A dropped picture, until the user says whether to open it or measure against it.
     pub dropped: Option<PathBuf>,
     /// The saves under way.
     pub saver: Saver,
 }
 
 impl FileRequests {
-    /// None yet; paths will be asked for by `dialogs`.
+    /// No requests yet; `dialogs` will ask for paths.
     pub fn new(dialogs: Dialogs) -> Self {
         Self {
             dialogs,

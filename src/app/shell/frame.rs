@@ -1,4 +1,4 @@
-//! One frame of the window.
+//! A frame of the window: input, changes, layout.
 
 use std::time::Duration;
 
@@ -57,7 +57,7 @@ impl App {
     pub fn close(&mut self) {
         self.files.saver.finish();
         self.snapshots.close();
-        // Nobody is there any more to be told.
+        // Nobody is left to report a failure to.
         let _ = self.write_preferences();
         if let Some(stats) = &self.stats {
             stats.write();

@@ -39,7 +39,7 @@ pub fn show(ctx: &Context, open: &mut bool) {
         });
 }
 
-/// All keys and then all moves, in so many columns.
+/// Page of all keys and then all moves, in so many columns.
 fn page(ui: &mut Ui, columns: usize) {
     let of_command = |command: Command| {
         (ui.ctx().format_shortcut(&command.shortcut()), command.text().to_owned())

@@ -1,4 +1,4 @@
-//! Where the window meets what is measured of the picture: figures, region and reference.
+//! Figures, region and reference of the picture, as the window shows them.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -14,7 +14,7 @@ use crate::app::ui::words::samples;
 use crate::render::Picture;
 
 impl App {
-    /// The pictures that figures are told of: those of A and B, or the one in the viewport.
+    /// Pictures that the figures are of: those of A and B, or the one in the viewport.
     pub(super) fn looked_at(&self) -> Vec<Arc<Picture>> {
         match self.compare.second_side.pictures(&self.engine) {
             Some(pictures) => pictures.to_vec(),
@@ -35,7 +35,7 @@ impl App {
         compare.update(ctx, pictures, tone, self.snapshots.picture().is_some());
     }
 
-    /// Shows how A and B, the region and the reference are looked at and what is known of them.
+    /// Shows the rows of A and B, the region and the reference.
     pub(super) fn measure_rows(&mut self, ui: &mut Ui) {
         let (pictures, document) = (self.looked_at(), &self.editor.document);
         match rows::show(ui, &mut self.compare, document, &pictures, self.engine.picture()) {

@@ -38,7 +38,7 @@ pub struct MenuItems<'a> {
     pub editor: &'a Editor,
     /// Files that were open before, the last one first.
     pub recent: &'a [String],
-    /// The one of them that is asked for.
+    /// The recent file that is to be opened, once one is chosen.
     pub reopened: &'a mut Option<String>,
     /// Commands that are asked for.
     pub commands: &'a mut Vec<Command>,

@@ -6,14 +6,14 @@ use crate::scene::Note;
 
 /// The scene that is open.
 pub struct Opened {
-    /// Its path or `builtin:NAME`; of a snapshot the name in the strip.
+    /// Path of the scene or `builtin:NAME`; of a snapshot the name in the strip.
     pub source: String,
-    /// The guesses made when it was opened.
+    /// The guesses made when the scene was opened.
     pub notes: Vec<Note>,
 }
 
 impl Opened {
-    /// A short name of it: the file name, or the name of an embedded scene.
+    /// Short name of the scene: the file name, or the name of an embedded scene.
     pub fn title(&self) -> String {
         match self.source.strip_prefix("builtin:") {
             Some(name) => name.to_owned(),

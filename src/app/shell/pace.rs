@@ -2,12 +2,12 @@
 
 use std::time::{Duration, Instant};
 
-/// Keeps frames apart where drawing them takes the cores from the render.
+/// Limits the frame rate where drawing frames takes the cores from the render.
 #[derive(Debug)]
 pub struct FramePace {
-    /// The shortest time from frame to frame; `None`: frames come as they are asked for.
+    /// Shortest time from frame to frame; `None`: no limit.
     shortest: Option<Duration>,
-    /// When the last frame began.
+    /// Time at which the last frame began.
     last: Option<Instant>,
 }
 

@@ -29,7 +29,7 @@ pub enum PaletteChoice {
 }
 
 impl Palette {
-    /// Shows it over the upper part of the picture.
+    /// Shows the palette over the upper part of the picture.
     pub fn show(&mut self, ctx: &Context) -> PaletteChoice {
         let mut open = true;
         let window = Window::new("All commands")
@@ -80,7 +80,7 @@ impl Palette {
         clicked.or_else(|| found.get(self.chosen).copied().filter(|_| entered))
     }
 
-    /// By how many rows the arrow keys move the choice.
+    /// Number of rows by which the arrow keys move the choice.
     fn moved(&self, ui: &Ui) -> isize {
         ui.input_mut(|input| {
             let mut count = |key| input.count_and_consume_key(egui::Modifiers::NONE, key) as isize;

@@ -26,7 +26,7 @@ impl App {
         }
     }
 
-    /// Does with a chosen path what it was asked for.
+    /// Uses a chosen path for its purpose.
     pub(super) fn take_path(&mut self, ctx: &Context, purpose: Purpose, path: PathBuf) {
         if purpose == Purpose::Open {
             self.open_or_ask(&path.to_string_lossy());

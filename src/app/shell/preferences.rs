@@ -1,5 +1,5 @@
-//! The preferences kept between runs: how the window is laid out, how pictures are shown, which
-//! files were open. Never the scene or the strategy.
+//! The preferences, stored between runs: the layout of the window, the display of pictures, recent
+//! files. Never the scene or the strategy.
 
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -15,9 +15,9 @@ use crate::image::tone::{Tone, ToneCurve};
 const FILE: &str = "window.json";
 /// The variable of the environment that names the data folder.
 const DATA: &str = "FLAMBEAU_DATA";
-/// Files kept in the list of recent files at most.
+/// Largest number of recent files.
 const RECENT: usize = 10;
-/// Scenes whose references are kept at most.
+/// Largest number of scenes whose references are stored.
 const REFERENCES: usize = 20;
 
 /// The preferences of the window.
@@ -32,7 +32,7 @@ pub struct Preferences {
     pub folded: bool,
     /// Parts of the panel column that are open or folded against what they were at the first start.
     pub sections: BTreeMap<String, bool>,
-    /// How much larger text and controls are than the screen asks for; 0 where none was chosen.
+    /// Scale of text and controls relative to that of the screen; 0 where none was chosen.
     pub scale: f32,
     /// Whether a start without a file shows what to begin with.
     pub start: bool,
@@ -42,7 +42,7 @@ pub struct Preferences {
     exposure: f32,
     /// White balance in kelvin; 0 where none was chosen.
     white: f32,
-    /// Its tint.
+    /// Tint of the white point.
     tint: f32,
 }
 
@@ -71,7 +71,7 @@ impl Preferences {
         serde_json::from_str(&text).unwrap_or_default()
     }
 
-    /// Writes it to `data`.
+    /// Writes the preferences to `data`.
     ///
     /// # Errors
     /// When the system refuses; names the file.
@@ -83,7 +83,7 @@ impl Preferences {
         files::replace(&path, |file| file.write_all(&text).map_err(|error| Error::io(&path, error)))
     }
 
-    /// Notes that `source` was opened. What is built in is always at hand.
+    /// Adds `source` to the recent files. Embedded scenes are always offered and need no entry.
     pub fn note(&mut self, source: &str) {
         if source.starts_with("builtin:") {
             return;
@@ -99,7 +99,7 @@ impl Preferences {
         self.references = references.iter().take(REFERENCES).cloned().collect();
     }
 
-    /// How pictures are shown at first.
+    /// Tone mapping of pictures at the start.
     pub fn tone(&self) -> Tone {
         let plain = Tone::default();
         let curve = ToneCurve::ALL.into_iter().find(|curve| curve.name() == self.curve);
@@ -112,7 +112,7 @@ impl Preferences {
         }
     }
 
-    /// How much larger text and controls are to be than the screen asks for, where that was chosen.
+    /// Scale of text and controls relative to that of the screen, where one was chosen.
     pub fn scale(&self) -> Option<f32> {
         let scale = sane(self.scale, 1.0).clamp(0.5, 3.0);
         (scale != 1.0).then_some(scale)
@@ -139,7 +139,7 @@ pub fn data_folder(chosen: Option<PathBuf>) -> Option<PathBuf> {
     chosen.or_else(named).or_else(|| eframe::storage_dir("flambeau"))
 }
 
-/// The name of what was opened, the same from every folder.
+/// Full name of a source, the same from every folder.
 pub fn full_name(source: &str) -> String {
     if source.starts_with("builtin:") {
         return source.to_owned();

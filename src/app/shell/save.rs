@@ -24,25 +24,25 @@ pub enum Content {
         film: mpsc::Receiver<Film>,
         /// The settings of the film, with its size, seed and limit.
         settings: Settings,
-        /// Seconds spent on it, and CPU time.
+        /// Seconds spent on the film, and CPU time.
         seconds: [f64; 2],
     },
     /// The picture as shown.
     Png {
         /// The film, once the session has copied it.
         film: mpsc::Receiver<Film>,
-        /// How it is shown.
+        /// Tone mapping of the picture.
         tone: Tone,
     },
     /// A scene file.
     Scene(Settings),
     /// The content of another file.
     Copy(PathBuf),
-    /// A picture kept earlier, as shown.
+    /// A snapshot's picture, as shown.
     Shown {
         /// The picture.
         picture: Arc<Picture>,
-        /// How it is shown.
+        /// Tone mapping of the picture.
         tone: Tone,
     },
     /// A view with its figures.

@@ -14,7 +14,7 @@ use crate::app::snapshots::{Keep, StripItem, strategy};
 use crate::app::ui::theme;
 use crate::render::Picture;
 
-/// How many pictures may be on their way to the disk, each of which takes the memory of its film.
+/// Largest number of pictures on their way to the disk, each of which takes the memory of its film.
 const MOST_AT_ONCE: usize = 2;
 
 impl App {
@@ -51,7 +51,7 @@ impl App {
         self.snapshots.keep(keep);
     }
 
-    /// The name of a source: of a snapshot of the strip its own.
+    /// Name of a source: of a snapshot of the strip its own.
     pub(super) fn name_of(&self, source: String) -> String {
         self.snapshots.name_of(Path::new(&source)).map_or(source.clone(), str::to_owned)
     }
@@ -108,7 +108,7 @@ impl App {
                 picture: item.picture().filter(|picture| !picture.variance.is_empty()).cloned(),
                 is_biased: item.record.strategy.ends_with("biased"),
             });
-        // Noise is told of both sides, and of a region.
+        // Noise is shown of both sides, and of a region.
         let measures = self.compare.versus.is_some() || self.compare.region.is_set();
         self.snapshots.strip.wants_variance = measures;
     }

@@ -13,7 +13,7 @@ use crate::app::ui::widgets::key_of;
 
 /// Room for a small picture, in points.
 const PICTURE: Vec2 = vec2(96.0, 54.0);
-/// Height of the line of text under it.
+/// Height of the line of text under a card.
 const LINE: f32 = 16.0;
 /// Width of the column of files.
 const FILES: f32 = 176.0;
@@ -57,11 +57,11 @@ const CARDS: [Card; 7] = [
 /// The choice of the user.
 #[derive(Clone, Debug, PartialEq)]
 pub enum StartChoice {
-    /// To open a file or an embedded scene.
+    /// Open a file or an embedded scene.
     Open(String),
     /// A command.
     Command(Command),
-    /// To close the row.
+    /// Close the row.
     Close,
 }
 
@@ -112,7 +112,7 @@ impl StartRow {
     }
 }
 
-/// The line above: what the hand can do, and how to be rid of the row.
+/// Line above the cards: what can be done, and the button that closes the row.
 fn head(ui: &mut Ui, again: &mut bool, choice: &mut Option<StartChoice>) {
     ui.horizontal(|ui| {
         ui.label(RichText::new("Start with a scene").color(color::TEXT_STRONG));

@@ -28,9 +28,9 @@ pub struct StatusLine<'a> {
     pub editor: &'a mut Editor,
     /// The render of the side that is edited.
     pub engine: &'a LiveRender,
-    /// The second side.
+    /// Second side of the comparison.
     pub second_side: &'a SecondSide,
-    /// How many sides take turns at the machine.
+    /// Number of sides that share time slices.
     pub turns: usize,
     /// The viewport, for the zoom and the pixel under the pointer.
     pub viewport: &'a Viewport,
@@ -86,7 +86,7 @@ pub fn show(ui: &mut Ui, panel: &mut StatusLine<'_>) {
     });
 }
 
-/// A picture that will never be quite right says so; of two, which one it is.
+/// Marks a biased picture; of two, says which one it is.
 fn bias(ui: &mut Ui, panel: &StatusLine<'_>) {
     if let Some(text) = panel::bias(&panel.editor.document, panel.second_side) {
         let help = "Ray marching is on (Strategy, Advanced): the picture converges to a slightly \
@@ -138,7 +138,7 @@ fn progress(ui: &mut Ui, stats: &RenderStats, engine: &LiveRender, turns: usize)
     ui.label(RichText::new(state).color(color::ACCENT));
 }
 
-/// How long a render with an end will take to get there, one of so many that take turns.
+/// Shows the time until the end of a render with a limit, one of so many that share time slices.
 fn ending(ui: &mut Ui, stats: &RenderStats, engine: &LiveRender, turns: usize) {
     let wanted = engine.built().map_or(0, |built| built.settings.film.spp);
     // A region that gets all samples has another pace than the picture.
@@ -149,7 +149,7 @@ fn ending(ui: &mut Ui, stats: &RenderStats, engine: &LiveRender, turns: usize) {
     ui.label(text).on_hover_text(format!("Time left until each pixel has {wanted} samples."));
 }
 
-/// At the pace so far; none before there is one, at the end, and where there is no end.
+/// Seconds left at the pace so far; `None` before there is one, at the end, and without a limit.
 fn seconds_left(stats: &RenderStats, wanted: u32) -> Option<f64> {
     let have = stats.samples_per_pixel;
     let is_known = have >= 1.0 && have < f64::from(wanted);

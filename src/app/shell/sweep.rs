@@ -1,4 +1,4 @@
-//! Where the window meets the sweep of all strategies: its progress below the picture, its results
+//! The sweep of all strategies, as the window shows it: its progress below the picture, its results
 //! in a window of their own, and the live render that waits for it.
 
 use egui::{Context, Rect, Ui};
@@ -10,7 +10,7 @@ use crate::app::sweep::results;
 use crate::app::ui::theme;
 
 impl App {
-    /// Starts what was asked for, takes in what was found, and lets the live render wait meanwhile.
+    /// Starts a requested sweep, takes in its results, and lets the live render wait meanwhile.
     pub(super) fn update_sweep(&mut self, ctx: &Context) {
         let Some(size) = self.film_size() else { return };
         let settings = &self.editor.document.settings;
@@ -25,7 +25,7 @@ impl App {
         }
     }
 
-    /// Shows how far it is.
+    /// Shows the progress of the sweep.
     pub(super) fn sweep_row(&mut self, ui: &mut Ui) {
         let Some(progress) = self.sweep.progress() else { return };
         let (what, fraction) = results::progress(&progress);

@@ -1,4 +1,4 @@
-//! Changes of the scene that no file has: told apart from what was opened or saved last.
+//! Unsaved changes of the scene: told apart from the scene as it was opened or saved last.
 
 use std::path::{Path, PathBuf};
 
@@ -56,9 +56,9 @@ impl UnsavedChanges {
         }
     }
 
-    /// Whether `settings` have changes that a file has not. Strategies are tried on and off all the
-    /// time and change no picture, and a film that follows the window has no size of its own. Who
-    /// looks around in a scene that Flambeau brings along, or in a bare volume, has made nothing yet.
+    /// Whether `settings` have changes that no file has. Strategies are tried on and off all the
+    /// time and change no picture, and a film that follows the window has no size of its own.
+    /// Moving the camera in an embedded scene, or in a bare volume, is no change to save yet.
     pub(super) fn differs_from(&self, settings: &Settings, keep_size: bool) -> bool {
         let mut film = self.saved.film;
         if !keep_size {

@@ -26,7 +26,7 @@ const LEFT_BEHIND: Duration = Duration::from_secs(3600);
 
 /// A job for the disk.
 pub enum DiskJob {
-    /// Everything that is there, after what was left behind is removed.
+    /// List all stored snapshots, after removing leftovers.
     List,
     /// Keep a picture.
     Keep(Box<Keep>),
@@ -34,13 +34,14 @@ pub enum DiskJob {
     Describe(String, Record),
     /// Put a snapshot aside.
     Delete(String),
-    /// Bring it back.
+    /// Restore a deleted snapshot.
     Restore(String),
     /// Remove these for good, which were deleted.
     Forget(Vec<String>),
     /// Read the picture of this snapshot.
     Read(StoredSnapshot),
-    /// Read it with the variance of its pixels, which takes as much memory as its film meanwhile.
+    /// Read a picture with the variance of its pixels, which takes as much memory as its film
+    /// meanwhile.
     ReadWithVariance(StoredSnapshot),
 }
 
@@ -50,13 +51,13 @@ pub struct Keep {
     pub film: mpsc::Receiver<Film>,
     /// The settings of the film, with its size, seed and limit.
     pub settings: Settings,
-    /// Seconds spent on it.
+    /// Seconds spent on the film.
     pub seconds: f64,
-    /// CPU time spent on it, in seconds.
+    /// CPU time spent on the film, in seconds.
     pub cpu_seconds: f64,
-    /// How it is shown.
+    /// Tone mapping of the thumbnail.
     pub tone: Tone,
-    /// Its name.
+    /// Name of the snapshot.
     pub name: String,
 }
 
@@ -67,7 +68,7 @@ pub type SnapshotWithThumbnail = (StoredSnapshot, Option<ColorImage>);
 pub enum DiskReport {
     /// The snapshots there are, and what else is in the folder.
     Listed(Vec<SnapshotWithThumbnail>, Vec<String>),
-    /// A picture is kept.
+    /// A snapshot was stored.
     Kept {
         /// The snapshot on the disk.
         kept: SnapshotWithThumbnail,
@@ -76,7 +77,7 @@ pub enum DiskReport {
         /// The snapshots removed so that the rest keeps within the limit.
         gone: Vec<StoredSnapshot>,
     },
-    /// A picture could not be kept.
+    /// A snapshot could not be stored, for this reason.
     NotKept(String),
     /// The picture of a snapshot, or why it could not be read.
     Read(String, Result<Arc<Picture>, String>),
@@ -93,7 +94,7 @@ pub struct DiskWorkers {
     reports: mpsc::Receiver<DiskReport>,
 }
 
-/// One of the threads.
+/// A thread that works on the disk.
 struct DiskThread {
     jobs: Option<mpsc::Sender<DiskJob>>,
     thread: Option<JoinHandle<()>>,
@@ -282,7 +283,7 @@ fn blank(size: &[u32; 2]) -> Picture {
     Picture { size: (*size).into(), pixels: Vec::new(), complete: true, ..Picture::default() }
 }
 
-/// Without a place nothing can be kept, and nothing else can be asked for.
+/// Without a folder no snapshot can be stored, and no other job can come.
 fn no_place(job: &DiskJob) -> Option<DiskReport> {
     let text = "There is no folder for snapshots. Set FLAMBEAU_DATA to one.";
     match job {

@@ -19,7 +19,7 @@ use crate::render::Picture;
 
 /// Room for a small picture, in points.
 const PICTURE: Vec2 = vec2(0.5 * LARGEST_THUMBNAIL.x as f32, 0.5 * LARGEST_THUMBNAIL.y as f32);
-/// Height of a line of text under it.
+/// Height of a line of text under a picture.
 const LINE: f32 = 15.0;
 /// Least and largest width of the field for a name, and of that for a note.
 const NAME_WIDTHS: [f32; 2] = [70.0, 150.0];
@@ -31,7 +31,7 @@ const HIDE_WIDTH: f32 = 60.0;
 /// Room that the button takes which undoes a deletion.
 const UNDO_WIDTH: f32 = 100.0;
 
-/// Shows the strip; gives what its buttons ask for. `live` is the picture behind.
+/// Shows the strip; returns what its buttons ask for. `live` is the live picture.
 pub fn show(ui: &mut Ui, snapshots: &mut Snapshots, live: Option<&Arc<Picture>>) -> Vec<Command> {
     let mut commands = Vec::new();
     head(ui, snapshots, &mut commands);
@@ -252,7 +252,7 @@ fn figures(spp: f64, noise: Option<f64>) -> String {
     }
 }
 
-/// How long ago that was.
+/// Age of a snapshot in words.
 fn ago(kept: u64) -> String {
     let minutes = now().saturating_sub(kept) / 60_000;
     match minutes {

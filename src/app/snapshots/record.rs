@@ -15,12 +15,12 @@ pub const LONGEST_NOTE: usize = 400;
 /// The record beside a snapshot, for the strip to show without reading the picture.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Record {
-    /// The user's name for it.
+    /// The user's name for the snapshot.
     pub name: String,
-    /// The user's note about it; a snapshot with a note is kept longer.
+    /// The user's note about the snapshot; one with a note is kept longer.
     #[serde(default)]
     pub note: String,
-    /// When it was kept, in milliseconds since the beginning of 1970.
+    /// Time of the snapshot, in milliseconds since the beginning of 1970.
     pub kept: u64,
     /// Mean samples of a pixel.
     pub spp: f64,
@@ -29,14 +29,14 @@ pub struct Record {
     /// Relative standard error of the picture, if it is known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub noise: Option<f64>,
-    /// The preset of its strategy, in words.
+    /// Preset of the strategy, in words.
     pub strategy: String,
     /// Width and height in pixels.
     pub size: [u32; 2],
 }
 
 impl Record {
-    /// The record of a picture of `settings` that is kept now.
+    /// The record of a snapshot of `settings` that is taken now.
     pub fn new(name: String, settings: &Settings, stats: &RenderStats) -> Self {
         Self {
             name,

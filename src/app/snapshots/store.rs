@@ -1,4 +1,4 @@
-//! The folder that snapshots are kept in between runs, one folder each:
+//! The folder that stores snapshots between runs, one folder each:
 //!
 //! ```text
 //! snapshots/1764268212345/picture.exr     all there is, to go on from
@@ -38,14 +38,14 @@ pub struct Store {
     deleted: PathBuf,
 }
 
-/// One snapshot in the folder.
+/// A stored snapshot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StoredSnapshot {
-    /// The name of its own folder.
+    /// Name of the snapshot's own folder.
     pub id: String,
-    /// The record beside it.
+    /// Record beside the picture.
     pub record: Record,
-    /// Bytes that it takes on the disk.
+    /// Size on the disk in bytes.
     pub bytes: u64,
 }
 
@@ -58,17 +58,17 @@ pub struct Listing {
     pub problems: Vec<String>,
 }
 
-/// All that a new snapshot is made of.
+/// Contents of a new snapshot.
 pub struct Fresh<'a> {
-    /// Its samples.
+    /// Film with its samples.
     pub film: &'a Film,
     /// The header of the picture's file.
     pub header: &'a SnapshotHeader,
-    /// The record beside it.
+    /// Record beside the picture.
     pub record: Record,
     /// The picture, small.
     pub thumbnail: &'a Thumbnail,
-    /// How it is shown.
+    /// Tone mapping of the thumbnail.
     pub tone: Tone,
 }
 
@@ -94,7 +94,7 @@ impl Store {
         (path == self.picture(id)).then(|| id.to_owned())
     }
 
-    /// Reads what is there. What is broken or belongs to something else is left alone and told.
+    /// Reads all snapshots. What is broken or belongs to something else is left alone and reported.
     pub fn list(&self) -> Listing {
         let mut listing = Listing::default();
         let Ok(folder) = fs::read_dir(&self.kept) else { return listing };
@@ -206,8 +206,9 @@ impl Store {
     }
 }
 
-/// Which of `entries`, the oldest first, have to go so that the rest takes `limit` bytes at most:
-/// the oldest without a note, and only where that is not enough those with one; never `newest`.
+/// Those of `entries`, the oldest first, that have to go so that the rest takes `limit` bytes at
+/// most: the oldest without a note, and only where that is not enough those with one; never
+/// `newest`.
 fn victims(entries: &[StoredSnapshot], limit: u64, newest: &str) -> Vec<StoredSnapshot> {
     let mut total: u64 = entries.iter().map(|entry| entry.bytes).sum();
     let (noted, plain): (Vec<&StoredSnapshot>, Vec<&StoredSnapshot>) = entries

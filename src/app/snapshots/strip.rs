@@ -27,9 +27,9 @@ pub struct StripItem {
 
 /// A small picture on its way to the graphics card.
 pub enum SmallPicture {
-    /// Not there yet.
+    /// The picture is not on the graphics card yet.
     Waiting(ColorImage),
-    /// There.
+    /// The picture is on the graphics card.
     Ready(TextureHandle),
 }
 
@@ -41,11 +41,11 @@ pub struct Strip {
     shown: Option<usize>,
     /// The deleted snapshots, the latest last, each with the place it had.
     deleted: Vec<(usize, StripItem)>,
-    /// Whether what is shown has changed since the strip was last drawn.
+    /// Whether another picture is shown since the strip was last drawn.
     moved: bool,
     /// Whether the picture shown should bring its variance along.
     pub wants_variance: bool,
-    /// Whether the user wants to see it; none: once there is something in it.
+    /// Whether the user wants to see the strip; `None`: once there is something in it.
     open: Option<bool>,
 }
 
@@ -56,14 +56,14 @@ impl StripItem {
         Self { entry, record, thumbnail, picture: None, unreadable: false }
     }
 
-    /// The picture, once it is read.
+    /// Picture of the snapshot, once it is read.
     pub fn picture(&self) -> Option<&Arc<Picture>> {
         self.picture.as_ref()
     }
 }
 
 impl Strip {
-    /// Takes in what was kept in earlier runs.
+    /// Adds the snapshots of earlier runs.
     pub fn fill(&mut self, earlier: Vec<SnapshotWithThumbnail>) {
         let count = earlier.len();
         self.items.splice(0..0, earlier.into_iter().map(StripItem::new));
@@ -88,17 +88,17 @@ impl Strip {
         self.shown = shown.and_then(|id| self.place_of(&id));
     }
 
-    /// All of them, the oldest first.
+    /// All snapshots, the oldest first.
     pub fn items_mut(&mut self) -> &mut [StripItem] {
         &mut self.items
     }
 
-    /// All of them, the oldest first.
+    /// All snapshots, the oldest first.
     pub fn items(&self) -> &[StripItem] {
         &self.items
     }
 
-    /// The one in this folder.
+    /// The snapshot in the folder `id`.
     pub fn find(&self, id: &str) -> Option<&StripItem> {
         self.items.iter().find(|item| item.entry.id == id)
     }
@@ -117,7 +117,7 @@ impl Strip {
         self.shown.and_then(|index| self.items.get(index))
     }
 
-    /// The same, to edit its name and note.
+    /// The snapshot shown, to edit its name and note.
     pub fn shown_item_mut(&mut self) -> Option<&mut StripItem> {
         self.shown.and_then(|index| self.items.get_mut(index))
     }
@@ -128,7 +128,7 @@ impl Strip {
         self.moved = true;
     }
 
-    /// Whether what is shown has changed since this was last asked.
+    /// Whether the picture shown has changed since this was last asked.
     pub fn take_moved(&mut self) -> bool {
         std::mem::take(&mut self.moved)
     }
@@ -149,7 +149,7 @@ impl Strip {
         self.open.unwrap_or(!self.items.is_empty())
     }
 
-    /// Shows or folds it.
+    /// Shows or folds the strip.
     pub fn toggle(&mut self) {
         self.open = Some(!self.is_open());
     }
@@ -257,7 +257,7 @@ impl Strip {
         std::iter::once(name.to_owned()).chain(numbered).find(is_free).unwrap_or_default()
     }
 
-    /// Bytes that all of them take on the disk.
+    /// Size of all snapshots on the disk, in bytes.
     pub fn bytes(&self) -> u64 {
         self.items.iter().map(|item| item.entry.bytes).sum()
     }

@@ -36,7 +36,7 @@ impl Thumbnail {
     }
 }
 
-/// Which of `whole` pixels in a line the `index`-th of `parts` larger ones touches.
+/// Range of the `whole` pixels in a line that the `index`-th of `parts` larger ones touches.
 fn covered(index: u32, whole: u32, parts: u32) -> Range<usize> {
     let at = |index: u32| u64::from(index) * u64::from(whole);
     let parts = u64::from(parts);

@@ -23,7 +23,7 @@ pub struct BarAxis {
 }
 
 impl BarAxis {
-    /// Covers all of a ranking with its errors, and 1, where bars begin.
+    /// An axis that covers all of a ranking with its errors, and 1, where bars begin.
     pub fn over(ranking: &Ranking) -> Self {
         let known = ranking.entries.iter().filter_map(|entry| entry.over_baseline);
         let ends = known.flat_map(|speed_up| speed_up.interval()).map(f64::log10);
@@ -32,13 +32,13 @@ impl BarAxis {
         Self { low: low - margin, high: (high + margin).max(low + LEAST_SPAN) }
     }
 
-    /// Where a number lies in `rect`.
+    /// Position of a number in `rect`.
     fn x(&self, rect: Rect, value: f64) -> f32 {
         let share = (value.log10() - self.low) / (self.high - self.low);
         lerp(rect.x_range(), share as f32)
     }
 
-    /// The powers of ten on it.
+    /// The powers of ten on the axis.
     fn powers(&self) -> impl Iterator<Item = f64> {
         (self.low.ceil() as i32..=self.high.floor() as i32).map(|power| 10_f64.powi(power))
     }
@@ -50,7 +50,7 @@ impl BarAxis {
         self.powers().filter(move |power| power.log10().round() as i32 % every == 0)
     }
 
-    /// Its numbers above the bars.
+    /// Numbers of the axis above the bars.
     pub fn heading(&self, ui: &mut Ui) {
         let size = vec2(SIZE.x, space::ROW_HEIGHT);
         let (rect, response) = ui.allocate_exact_size(size, Sense::hover());

@@ -1,4 +1,4 @@
-//! Every strategy tried on the shot, on a thread of its own, while the live render waits.
+//! A sweep of every strategy on the shot, on a thread of its own, while the live render waits.
 //!
 //! - `results`: the ranking in a window; `bar`: its bars.
 
@@ -24,7 +24,7 @@ use crate::transport::Scene;
 
 /// The part of a sweep after which every strategy has begun, which takes longer than to go on.
 const SET_UP: f64 = 0.1;
-/// The part of it behind that by which its pace is known.
+/// Fraction of the sweep behind that by which its pace is known.
 const PACED: f64 = 0.05;
 
 /// The sweep under way and the results of the last one.
@@ -33,7 +33,7 @@ pub struct Sweep {
     pub seconds: f64,
     /// Whether the results are shown, once there are any.
     pub open: bool,
-    /// Whether it starts as soon as the scene is built.
+    /// Whether the sweep starts as soon as the scene is built.
     wanted: bool,
     running: Option<Running>,
     results: Option<Results>,
@@ -46,7 +46,7 @@ pub struct Results {
     settings: Settings,
     /// The strategies, ranked.
     pub ranking: Ranking,
-    /// Whether it was cancelled before all strategies had their time.
+    /// Whether the sweep was cancelled before all strategies had their time.
     pub interrupted: bool,
 }
 
@@ -56,7 +56,7 @@ struct Running {
     stop: Arc<AtomicBool>,
     reports: mpsc::Receiver<SweepReport>,
     progress: SweepProgress,
-    /// When and at which part of it all strategies were at work, so that the pace is known.
+    /// Time and fraction at which all strategies were at work, so that the pace is known.
     since: Option<(Instant, f64)>,
 }
 
@@ -74,7 +74,7 @@ impl Drop for Running {
 }
 
 impl Sweep {
-    /// None yet; it will have `threads` workers (`None`: as many as fit).
+    /// No sweep yet; one will have `threads` workers (`None`: as many as fit).
     pub fn new(threads: Option<usize>) -> Self {
         let (seconds, open) = (DEFAULT_SECONDS, false);
         Self { seconds, open, wanted: false, running: None, results: None, threads }
@@ -87,7 +87,7 @@ impl Sweep {
         self.open = true;
     }
 
-    /// Ends what runs; what it has found so far becomes the result.
+    /// Ends the sweep under way; what it has found so far becomes the result.
     pub fn cancel(&mut self) {
         self.wanted = false;
         if let Some(running) = &self.running {
@@ -105,12 +105,12 @@ impl Sweep {
         self.results.as_ref()
     }
 
-    /// Whether it runs or is about to.
+    /// Whether the sweep runs or is about to.
     pub fn is_running(&self) -> bool {
         self.wanted || self.running.is_some()
     }
 
-    /// How far it is, while it runs, and the time left once that is known.
+    /// Progress of the sweep while it runs, and the time left once that is known.
     pub fn progress(&self) -> Option<(SweepProgress, Option<Duration>)> {
         let Some(running) = &self.running else {
             return self.wanted.then_some((SweepProgress::Preparing(0, 1), None));
@@ -202,8 +202,7 @@ impl Sweep {
 }
 
 impl Results {
-    /// Whether the scene, the camera or a finer choice of the strategy is another one than it was
-    /// tried with.
+    /// Whether the scene, the camera or a finer choice of the strategy has changed since the sweep.
     pub fn is_stale(&self, settings: &Settings) -> bool {
         let (tried, now) = (&self.settings.strategy, &settings.strategy);
         !same_shot(&self.settings, settings)
@@ -213,7 +212,7 @@ impl Results {
 }
 
 impl Running {
-    /// Takes in what the thread has done; how it ended, once it has.
+    /// Takes in what the thread has done; the result of the sweep, once it has ended.
     fn poll(&mut self) -> Option<Result<(Ranking, bool)>> {
         loop {
             match self.reports.try_recv() {

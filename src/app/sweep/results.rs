@@ -197,7 +197,7 @@ fn gain(ui: &mut Ui, gain: &Gain) {
     });
 }
 
-/// How long each strategy is tried, and the button that does it again.
+/// Field for the time per strategy, and the button that runs the sweep again.
 fn again(ui: &mut Ui, sweep: &mut Sweep, commands: &mut Vec<Command>) {
     ui.horizontal(|ui| {
         let help = "CPU time for each strategy. Four times the time halves the errors.";

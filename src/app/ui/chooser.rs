@@ -1,4 +1,4 @@
-//! One of many things by its name, from a list that stays short.
+//! Choosing one of many things by its name, from a list that stays short.
 
 use egui::{Button, Id, ScrollArea, TextEdit, Ui};
 

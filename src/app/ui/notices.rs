@@ -6,7 +6,7 @@ use egui::{Frame, Margin, RichText, Stroke, Ui};
 
 use super::theme::{color, space};
 
-/// How grave a notice is.
+/// Severity of a notice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Level {
     /// Something went well and is worth saying, such as a saved file. Leaves with the next one,
@@ -18,12 +18,12 @@ pub enum Level {
     Refused,
 }
 
-/// One message.
+/// A notice below the picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Notice {
-    /// How grave it is.
+    /// Severity of the notice.
     pub level: Level,
-    /// The event, its object, and how to mend it.
+    /// The event, its object, and how to fix it.
     pub text: String,
 }
 
@@ -35,7 +35,7 @@ pub struct Notices {
     since: Option<f64>,
 }
 
-/// More than this many would crowd the picture out.
+/// Largest number of notices shown; more would crowd the picture out.
 const MOST: usize = 3;
 /// Seconds for which a message that leaves by itself is shown.
 const STAY: f64 = 12.0;
@@ -76,7 +76,7 @@ impl Notices {
         &self.list
     }
 
-    /// Shows them as a stack of bars, each with a button that dismisses it.
+    /// Shows the notices as a stack of bars, each with a button that dismisses it.
     pub fn show(&mut self, ui: &mut Ui) {
         let mut dismissed = None;
         for (index, notice) in self.list.iter().enumerate() {
@@ -109,7 +109,7 @@ impl Notices {
     }
 }
 
-/// Shows one notice; where, and whether it was dismissed. A screen reader reads it out.
+/// Shows one notice; its place, and whether it was dismissed. A screen reader reads it out.
 fn bar(ui: &mut Ui, notice: &Notice) -> (egui::Rect, bool) {
     let (accent, heading) = match notice.level {
         Level::Done => (color::ACCENT, "Done"),

@@ -12,17 +12,17 @@ use crate::app::ui::theme::{color, space};
 #[derive(Clone, Debug, Default)]
 pub struct Sections(Arc<Mutex<SectionState>>);
 
-/// Where the parts that are shown begin, in points below the top of the column, the first one first.
+/// Tops of the parts that are shown, in points below the top of the column, the first one first.
 pub type Tops = Vec<(&'static str, f32)>;
 
 #[derive(Debug, Default)]
 struct SectionState {
-    /// Where the column begins on the screen.
+    /// Top of the column on the screen.
     top: f32,
     tops: Tops,
-    /// How far the column is to be scrolled, where that was decided.
+    /// Scroll offset of the column, where one was decided.
     offset: Option<f32>,
-    /// By title; what is not in it is as at the first start.
+    /// Open sections by title; one that is not in it is as at the first start.
     open: BTreeMap<String, bool>,
     /// Whether all are to be as at the first start.
     is_reset: bool,
@@ -40,7 +40,7 @@ impl Sections {
         ctx.data_mut(|data| data.get_temp_mut_or_default::<Self>(Id::NULL).clone())
     }
 
-    /// Which ones differ from the first start, by title.
+    /// Sections that differ from the first start, by title.
     pub fn chosen(&self) -> BTreeMap<String, bool> {
         self.with(|chosen| chosen.open.clone())
     }
@@ -58,7 +58,7 @@ impl Sections {
         self.with(|chosen| chosen.is_reset = false);
     }
 
-    /// Begins to show them from `top` on the screen downwards.
+    /// Begins to show the sections from `top` on the screen downwards.
     pub fn begin(&self, top: f32) {
         self.with(|chosen| {
             chosen.top = top;
@@ -66,12 +66,12 @@ impl Sections {
         });
     }
 
-    /// Where on the screen they begin, scrolled out of sight or not.
+    /// Top of the column on the screen, scrolled out of sight or not.
     pub fn top(&self) -> f32 {
         self.with(|chosen| chosen.top)
     }
 
-    /// Where those that were shown last begin.
+    /// Tops of the parts that were shown last.
     pub fn tops(&self) -> Tops {
         self.with(|chosen| chosen.tops.clone())
     }
@@ -81,7 +81,7 @@ impl Sections {
         self.with(|chosen| chosen.offset = Some(offset));
     }
 
-    /// How far it is to be scrolled now.
+    /// Takes the scroll offset that the column is to get now.
     pub fn take_offset(&self) -> Option<f32> {
         self.with(|chosen| chosen.offset.take())
     }
@@ -102,7 +102,7 @@ pub fn section(ui: &mut Ui, title: &'static str, contents: impl FnOnce(&mut Ui))
     section_under(ui, title, true, contents);
 }
 
-/// The same, folded until asked for.
+/// A section that is folded until opened.
 pub fn folded_section(ui: &mut Ui, title: &'static str, contents: impl FnOnce(&mut Ui)) {
     section_under(ui, title, false, contents);
 }

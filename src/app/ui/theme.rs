@@ -1,6 +1,6 @@
-//! The look of the window in one place: colors, spacing, type. Panels take from here and spell out
-//! none of their own. Everything but the accents is neutral gray, so that nothing tints the eye
-//! that judges the picture.
+//! The visual style of the window in one place: colors, spacing, type. Panels take from here and
+//! spell out none of their own. Everything but the accents is neutral gray, so that nothing tints
+//! the eye that judges the picture.
 #![allow(clippy::disallowed_methods, reason = "this is the place that spells colors out")]
 
 use egui::{Color32, Context, CornerRadius, FontFamily, FontId, Margin, Stroke, TextStyle, vec2};
@@ -43,8 +43,8 @@ pub mod color {
     pub const CURVE_CHANCE: Color32 = Color32::from_rgb(96, 170, 240);
     /// Curves: what probes draw.
     pub const CURVE_PROBES: Color32 = ACCENT;
-    /// Curves: what glows.
-    pub const CURVE_GLOW: Color32 = Color32::from_rgb(132, 204, 120);
+    /// Curves of emission.
+    pub const CURVE_EMISSION: Color32 = Color32::from_rgb(132, 204, 120);
     /// Axes of the world over the picture: x, y and z.
     pub const AXES: [Color32; 3] = [
         Color32::from_rgb(226, 96, 96),
@@ -65,11 +65,11 @@ pub mod color {
 
 /// Distances in points.
 pub mod space {
-    /// Between things that belong together.
+    /// Space between things that belong together.
     pub const TIGHT: f32 = 4.0;
-    /// Between rows and columns.
+    /// Space between rows and columns.
     pub const ROW: f32 = 6.0;
-    /// Between a panel's edge and its contents.
+    /// Space between a panel's edge and its contents.
     pub const PANEL: i8 = 12;
     /// Width of the panel column.
     pub const COLUMN: f32 = 352.0;
@@ -95,9 +95,9 @@ pub mod space {
 pub mod size {
     /// Explanations under a control.
     pub const SMALL: f32 = 11.5;
-    /// Everything else.
+    /// Size of body text.
     pub const BODY: f32 = 13.0;
-    /// Names of panels.
+    /// Size of panel headings.
     pub const HEADING: f32 = 13.5;
 }
 

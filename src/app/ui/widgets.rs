@@ -53,7 +53,7 @@ pub fn arrow_steps(ui: &Ui, control: egui::Id) -> egui::Vec2 {
     )
 }
 
-/// The first sentence of a key's help.
+/// First sentence of a key's help.
 pub fn key_summary(path: &str) -> String {
     let help = keys::find(path).map(|key| key.help.clone()).unwrap_or_default();
     let help = help.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -94,11 +94,11 @@ pub fn row<R>(
     })
 }
 
-/// One number: a slider over a sensible range and a field for exact values beyond it.
+/// A row for one number: a slider over a sensible range and a field for exact values beyond it.
 pub struct Number<'a> {
-    /// Its name, also for screen readers and undo.
+    /// Name of the number, also for screen readers and undo.
     pub name: &'a str,
-    /// Its key in the scene file, which knows its help and what may be typed; empty where it has
+    /// Key of the number in the scene file, which gives its help and bounds; empty where it has
     /// none.
     pub key: &'a str,
     /// The range of the slider.
@@ -215,9 +215,9 @@ pub fn count(value: f64) -> String {
 
 /// Three numbers in a row, such as a point in space.
 pub struct Vector<'a> {
-    /// Its name, also for screen readers and undo.
+    /// Name of the vector, also for screen readers and undo.
     pub name: &'a str,
-    /// Its key in the scene file, which knows its help and what may be typed.
+    /// Key of the vector in the scene file, which gives its help and bounds.
     pub key: &'a str,
     /// Change per point of a drag.
     pub speed: f32,
@@ -309,8 +309,8 @@ pub fn is_reset(ui: &Ui, parts: &[&Response]) -> bool {
     double && parts.iter().any(|part| part.contains_pointer())
 }
 
-/// How strong a color is and, in a second row, its hue; whether either changed.
-/// `name` is that of the second row.
+/// Rows for the strength of a color and for its hue; whether either changed. `name` is that of the
+/// second row.
 pub fn color_rows(ui: &mut Ui, number: Number<'_>, name: &str, value: &mut Color) -> bool {
     let before = *value;
     let help = key_help(number.key);
@@ -362,8 +362,8 @@ fn segments_but(
     clicked
 }
 
-/// One of the names that a key of the scene file chooses among; whether it changed. More names
-/// than a row has room for stand below the label.
+/// Row for one of the names that a key of the scene file chooses among; whether it changed. More
+/// names than a row has room for stand below the label.
 pub fn choice<T>(ui: &mut Ui, name: &str, key: &str, value: &mut T) -> bool
 where
     T: serde::Serialize + serde::de::DeserializeOwned,
@@ -414,7 +414,7 @@ fn choice_name(name: &str) -> String {
     }
 }
 
-/// A name with a capital letter.
+/// A name that begins with a capital.
 pub fn capitalized(name: &str) -> String {
     let mut letters = name.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())

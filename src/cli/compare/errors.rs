@@ -1,4 +1,4 @@
-//! How far both sides are from a reference.
+//! Errors of both sides against a reference.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use crate::image::metrics::{self, Viewing};
 use crate::render::publish::resolve;
 use crate::render::side_by_side::RenderedPair;
 
-/// How far a side is from the reference.
+/// Errors of a side against the reference.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Errors {
     /// The relative mean squared error.

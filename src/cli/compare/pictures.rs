@@ -45,7 +45,7 @@ fn difference(folder: &Path, films: [&Film; 2]) -> Result<()> {
     map::write(&folder.join("difference.png"), &map)
 }
 
-/// Both on the same scale, so that their colors can be compared.
+/// Writes the noise of both films on the same scale, so that their colors can be compared.
 fn noise(folder: &Path, films: [&Film; 2]) -> Result<()> {
     let values = films.map(maps::noise);
     let seen = || values.iter().flatten().copied().filter(|&value| value > 0.0);

@@ -11,7 +11,7 @@ use crate::transport::strategy::Preset;
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StrategyChoice {
     text: String,
-    /// As `--set` takes them.
+    /// Overrides of the strategy, as `--set` takes them.
     set: Vec<String>,
 }
 
@@ -26,15 +26,15 @@ impl FromStr for StrategyChoice {
 }
 
 impl StrategyChoice {
-    /// As it was written.
+    /// Text of the side as it was written.
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// `settings` with this strategy; `option` is what the user wrote it after.
+    /// `settings` with this strategy; `option` is the option that the user wrote it after.
     ///
     /// # Errors
-    /// Names the option, the key and the mend. Keys that are not the strategy's are refused: with
+    /// Names the option, the key and the fix. Keys that are not the strategy's are refused: with
     /// them the two sides would be two pictures.
     pub fn over(&self, settings: &Settings, option: &str) -> Result<Settings> {
         let overrides = Overrides { preset: None, set: self.set.clone() };
@@ -45,7 +45,7 @@ impl StrategyChoice {
         })
     }
 
-    /// The options that lead another command to it, each with a space before.
+    /// Options that lead another command to this strategy, each with a space before.
     pub fn in_words(&self) -> String {
         self.set.iter().map(|assignment| format!(" --set {}", quoted(assignment))).collect()
     }

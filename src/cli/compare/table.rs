@@ -33,7 +33,7 @@ pub struct CompareTable {
     pub agreement: AgreementRow,
 }
 
-/// The figures of one side; those that `render --stats` has too carry the same names.
+/// Figures of one side; those that `render --stats` has too carry the same names.
 #[derive(Debug, Serialize)]
 pub struct SideRow {
     #[serde(skip)]
@@ -55,7 +55,7 @@ pub struct SideRow {
     tracking_steps: u64,
     non_finite_samples: u64,
     guard_hits: u64,
-    /// Against the reference, if there is one.
+    /// Errors against the reference, if there is one.
     errors: Option<Errors>,
     /// Pairs of CPU seconds of rendering and noise.
     noise_over_time: Vec<[f64; 2]>,
@@ -109,7 +109,7 @@ const NAMES: [&str; 10] = [
 ];
 
 impl SideRow {
-    /// Its column.
+    /// Cells of this side's column.
     fn cells(&self) -> [String; NAMES.len()] {
         let or_none = |value: Option<String>| value.unwrap_or_else(|| "none yet".to_owned());
         let variance = self.gray_variance_of_mean.zip(self.gray_variance_error);
@@ -139,7 +139,7 @@ pub struct AgreementRow {
     verdict: &'static str,
     /// Differences looked at.
     tests: usize,
-    /// The chance of a false alarm in all of them.
+    /// Probability of a false alarm in all tests together.
     alarm: f64,
     overall: Option<DifferenceRow>,
     worst: Option<DifferenceRow>,

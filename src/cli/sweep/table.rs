@@ -44,7 +44,7 @@ struct SweepTableRow {
     leave_on: bool,
     /// Whether no difference from the best is known.
     as_good_as_best: bool,
-    /// Why there are no figures, or another strategy's.
+    /// Reason why there are no figures, or why they are another strategy's.
     note: Option<String>,
     spp: Option<f64>,
     fewest_samples: Option<u32>,
@@ -54,7 +54,7 @@ struct SweepTableRow {
     /// Standard error of the variance.
     gray_variance_error: Option<f64>,
     variance_times_time: Option<f64>,
-    /// How much faster than the baseline, and than the best.
+    /// Speed-up over the baseline.
     over_baseline: Option<SpeedUpRow>,
     over_best: Option<SpeedUpRow>,
     #[serde(skip)]
@@ -65,9 +65,9 @@ struct SweepTableRow {
 #[derive(Debug, Serialize)]
 struct ToggleRow {
     toggle: &'static str,
-    /// How much faster it is alone than the baseline.
+    /// Speed-up of the toggle alone over the baseline.
     alone: Option<SpeedUpRow>,
-    /// How much faster everything else on is than everything on.
+    /// Speed-up of everything else on over everything on.
     left_out: Option<SpeedUpRow>,
     #[serde(skip)]
     cells: [String; GAINS.len()],

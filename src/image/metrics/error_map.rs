@@ -3,7 +3,7 @@
 use glam::UVec2;
 use rayon::prelude::*;
 
-/// How far every pixel of a picture is from the reference.
+/// Error of every pixel of a picture against the reference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ErrorMap {
     /// Width and height in pixels.
@@ -22,8 +22,8 @@ impl ErrorMap {
         Self { size, mean: sum / map.len().max(1) as f64, map }
     }
 
-    /// The mean over a rectangle of `size` pixels from `first` on, as far as it lies on the map; 0
-    /// where none of it does.
+    /// Mean over a region of `size` pixels from `first` on, clipped to the map; 0 where they do not
+    /// overlap.
     pub fn mean_of(&self, first: UVec2, size: UVec2) -> f64 {
         let first = first.min(self.size);
         let end = first.saturating_add(size).min(self.size);
@@ -65,7 +65,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn means_of_rectangles_end_at_the_map() {
+    fn means_of_regions_end_at_the_map() {
         let map = ErrorMap::new(UVec2::new(3, 2), vec![1.0, 2.0, 3.0, 4.0, 5.0, 9.0]);
         let mean = |x, y, w, h| map.mean_of(UVec2::new(x, y), UVec2::new(w, h));
         assert_eq!(mean(0, 0, 3, 2), map.mean);

@@ -1,15 +1,15 @@
-//! Both measures of one picture.
+//! Both error measures of one picture: relMSE and FLIP.
 
 use super::{ErrorMap, Flip, Viewing, rel_mse};
 use crate::error::Result;
 use crate::image::reference::Reference;
 
-/// How far a picture is from a reference.
+/// Errors of a picture against a reference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Errors {
     /// The relative mean squared error, see [`rel_mse`].
     pub rel_mse: ErrorMap,
-    /// What is seen of it, see [`Flip`].
+    /// Perceived differences in 0..=1, see [`Flip`].
     pub flip: ErrorMap,
 }
 

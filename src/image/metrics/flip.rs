@@ -36,17 +36,17 @@ pub const PIXELS_PER_DEGREE: f32 = 67.020_64;
 
 /// Compresses differences of color (q_c of the paper).
 const COLOR_POWER: f32 = 0.7;
-/// Up to this share of the largest difference of color (p_c) ...
+/// Share of the largest color difference (p_c) up to which errors rise to [`KNEE_ERROR`].
 const KNEE: f32 = 0.4;
-/// ... errors rise to this (p_t); what is above shares the rest.
+/// Error at the knee (p_t); larger differences share the rest of the range.
 const KNEE_ERROR: f32 = 0.95;
 /// Widens differences of features (q_f).
 const FEATURE_POWER: f32 = 0.5;
 
-/// How both pictures are looked at.
+/// Viewing conditions of both pictures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Viewing {
-    /// How they are brought to the screen.
+    /// Tone mapping that brings both pictures to the screen.
     pub tone: Tone,
     /// Pixels in a degree of the visual field, from 1 to 1000: d · w · π / 180 for a screen with w
     /// pixels per meter seen from d meters. The more, the smaller are details, and the less is seen.
@@ -78,13 +78,14 @@ pub struct Flip<'a> {
 }
 
 impl<'a> Flip<'a> {
-    /// Looks at `reference`. Runs on the threads of the calling pool.
+    /// Perceives `reference` once, for comparison with many pictures. Runs on the threads of the
+    /// calling pool.
     ///
     /// # Errors
     /// When the pixels per degree are out of their range.
     pub fn new(reference: &'a Reference, viewing: Viewing) -> Result<Self> {
         let eye = Eye::new(viewing.pixels_per_degree)?;
-        let seen = eye.look(&codes(reference.pixels(), viewing.tone), reference.size());
+        let seen = eye.filter(&codes(reference.pixels(), viewing.tone), reference.size());
         Ok(Self { reference, tone: viewing.tone, eye, seen })
     }
 
@@ -95,7 +96,7 @@ impl<'a> Flip<'a> {
     pub fn compare(&self, picture: &[[f32; 4]]) -> Result<ErrorMap> {
         self.reference.check_pixels(picture)?;
         let size = self.reference.size();
-        let seen = self.eye.look(&codes(picture, self.tone), size);
+        let seen = self.eye.filter(&codes(picture, self.tone), size);
         Ok(ErrorMap::new(size, difference(&self.seen, &seen)))
     }
 }
@@ -105,7 +106,7 @@ fn codes(pixels: &[[f32; 4]], tone: Tone) -> Vec<[u8; 3]> {
     pixels.par_iter().map(|&[r, g, b, _]| encoder.encode(Rgb::new(r, g, b))).collect()
 }
 
-/// What the eye does to any picture at one distance.
+/// Filters of the eye at one viewing distance.
 #[derive(Clone, Debug)]
 struct Eye {
     contrast: Contrast,
@@ -133,8 +134,8 @@ impl Eye {
         })
     }
 
-    /// Looks at 8-bit sRGB `codes`, whose number is that of `size`.
-    fn look(&self, codes: &[[u8; 3]], size: UVec2) -> PerceivedImage {
+    /// Filters 8-bit sRGB `codes` of a picture of `size` as the eye does.
+    fn filter(&self, codes: &[[u8; 3]], size: UVec2) -> PerceivedImage {
         let width = size.x as usize;
         let plane = |channel: usize| -> Vec<f32> {
             codes.par_iter().map(|&code| opponent_from_code(code)[channel]).collect()

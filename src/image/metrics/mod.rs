@@ -1,4 +1,4 @@
-//! How far a picture is from a reference: one number, and a map of where.
+//! Errors of a picture against a reference: one number, and a map over the pixels.
 //!
 //! - [`rel_mse()`] is the usual measure of noise in linear light: squared differences, relative to
 //!   the brightness of the reference.

@@ -6,8 +6,8 @@ use super::ErrorMap;
 use crate::error::Result;
 use crate::image::reference::Reference;
 
-/// What is added to the squared reference, so that dark pixels count for little and black ones don't
-/// divide by zero; in squared units of radiance, so that a picture's exposure matters.
+/// Added to the squared reference, so that dark pixels count for little and black ones don't divide
+/// by zero; in squared units of radiance, so that a picture's exposure matters.
 pub const REL_MSE_FLOOR: f64 = 0.01;
 
 /// The relative mean squared error of linear `picture`: (x − r)² / (r² + [`REL_MSE_FLOOR`]) of each

@@ -7,16 +7,16 @@ use crate::math::Rgb;
 /// The curve from exposed linear values to display-linear ones.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ToneCurve {
-    /// None: values above 1 clip.
+    /// No curve: values above 1 clip.
     Linear,
     /// A shoulder that lets fire go through yellow to white, and a toe that keeps blacks deep.
     #[default]
     Filmic,
-    /// Softer: bright colors fade to white early, as in Blender's view of the same name.
+    /// AgX, softer: bright colors fade to white early, as in Blender's view of that name.
     Agx,
 }
 
-/// Beyond this curves are flat; also keeps their squares finite.
+/// Input beyond which curves are flat; also keeps squares finite.
 const BRIGHTEST: f32 = 1.0e4;
 
 /// AgX: stops of middle gray's light that the curve starts and ends at, over 1.
@@ -35,10 +35,10 @@ const AGX_OUTSET: Mat3A = Mat3A::from_cols(
 );
 
 impl ToneCurve {
-    /// All of them, in the order in which a key goes through them.
+    /// All curves, in the order in which a key goes through them.
     pub const ALL: [Self; 3] = [Self::Filmic, Self::Agx, Self::Linear];
 
-    /// The one after this.
+    /// The next curve in the order of [`Self::ALL`], cyclic.
     #[must_use]
     pub fn next(self) -> Self {
         match self {
@@ -48,7 +48,7 @@ impl ToneCurve {
         }
     }
 
-    /// What menus call it.
+    /// Name of the curve in menus.
     pub fn name(self) -> &'static str {
         match self {
             Self::Linear => "Linear",

@@ -49,8 +49,8 @@ pub fn of_temperature(kelvin: f32) -> Rgb {
     color / luminance(color)
 }
 
-/// What each cone response is raised by. The greenest of warm lights are no colors any more: what
-/// they lack is not made up for beyond [`MOST_GAIN`].
+/// Gain of each cone response. The greenest of warm lights are no colors any more: their missing
+/// response is not made up for beyond [`MOST_GAIN`].
 fn gains(kelvin: f32, tint: f32) -> Vec3A {
     let tinted = xyz_of_uv(tinted(kelvin, tint));
     let [from, to] = [tinted, xyz_of(NEUTRAL)].map(|xyz| CONES_FROM_XYZ * xyz);

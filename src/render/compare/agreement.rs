@@ -9,10 +9,11 @@ use super::tally::Tally;
 use crate::math::ACCUMULATORS;
 use crate::render::area::Area;
 
-/// The chance that two settings which do agree are said to differ, in one check of all blocks.
+/// Probability of a false alarm in one check of all blocks: that settings which agree are said to
+/// differ.
 pub const ALARM: f64 = 1.0e-3;
 
-/// Fewer samples than this in any pixel, and no verdict is given: each accumulator has to have one.
+/// Fewest samples of any pixel for a verdict: one for each accumulator.
 pub const FEWEST_SAMPLES: u32 = ACCUMULATORS as u32;
 
 /// Differences below this share of the brightness may come of rounding to `f32` along the path.
@@ -21,18 +22,18 @@ pub(super) const ROUNDING: f64 = 1.0e-5;
 /// The outcome of a check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// Some pixels have too few samples for one.
+    /// Some pixels have too few samples for a verdict.
     TooFewSamples,
-    /// No difference stands out from the noise.
+    /// The films agree: no difference stands out from the noise.
     Agree,
-    /// Some difference does.
+    /// Some difference stands out from the noise.
     Differ,
 }
 
 /// The difference of two films over an area.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Difference {
-    /// The pixels that were looked at.
+    /// Region of the compared pixels.
     pub area: Area,
     /// Mean gray of A and of B.
     pub means: [f64; 2],
@@ -43,13 +44,14 @@ pub struct Difference {
 }
 
 impl Difference {
-    /// The difference over one area with these sums; `all` are those of the whole films. `None` without pixels.
+    /// The difference over one area with these sums; `all` are those of the whole films. `None`
+    /// without pixels.
     ///
     /// Means of many pixels are normal enough, but their variances are only estimated, and where
     /// few pixels make most of the noise not even well: Student's t with as many degrees of freedom
     /// as 2 V² / Var(V) says (Satterthwaite, "An Approximate Distribution of Estimates of Variance
     /// Components", 1946). Light that is rare may not have been met in an area at all, which then
-    /// looks free of noise; so each area is taken to hide one pixel as noisy as the noisiest of its
+    /// seems free of noise; so each area is taken to hide one pixel as noisy as the noisiest of its
     /// film, in the spirit of Laplace's rule of succession.
     fn new(area: &Area, sums: &[Tally; 2], all: &[Tally; 2]) -> Option<Self> {
         if sums.iter().any(|sum| sum.measured == 0) {
@@ -71,7 +73,7 @@ impl Difference {
         Some(Self { area: *area, means, standard_error, probability })
     }
 
-    /// How many standard errors A is above B.
+    /// Difference of A from B in standard errors, above 0 where A is brighter.
     pub fn standard_errors(&self) -> f64 {
         let difference = self.means[0] - self.means[1];
         if difference == 0.0 { 0.0 } else { difference / self.standard_error }
@@ -94,13 +96,13 @@ fn two_sided(distance: f64, freedom: f64) -> f64 {
 /// Whether two films show the same picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Agreement {
-    /// The outcome.
+    /// Verdict of the check.
     pub verdict: Verdict,
     /// The difference over the whole area; none where it has no pixel with a variance.
     pub overall: Option<Difference>,
     /// The difference over the block where one is least likely to be chance.
     pub worst: Option<Difference>,
-    /// How many differences were looked at: each block, and all of them together.
+    /// Number of tests made: one for each block, and one for all of them together.
     pub tests: usize,
     /// A difference less probable than this is taken to be real: the chance of a false alarm
     /// shared out over the tests (Bonferroni), for which they need not be independent.

@@ -15,7 +15,7 @@ use crate::render::publish::Picture;
 pub struct Comparison {
     /// Figures of A and of B.
     pub sides: [SideFigures; 2],
-    /// How much faster B is than A; none while that is not known at all.
+    /// Speed-up of B over A; `None` while nothing is known of it.
     pub speed_up: Option<SpeedUp>,
     /// Whether both show the same picture.
     pub agreement: Agreement,
@@ -31,8 +31,8 @@ impl Comparison {
         Self::of_sources(films, cpu_seconds, area)
     }
 
-    /// The same of two pictures that brought their variance along. Of their pixels it is known only
-    /// how many samples each has at least.
+    /// Compares two pictures that brought their variance along. Of their pixels only the least
+    /// number of samples is known.
     pub fn of_pictures(pictures: [&Picture; 2], area: Option<Area>) -> Self {
         let stats = pictures.map(|picture| &picture.stats);
         let mut comparison = Self::of_sources(pictures, stats.map(|s| s.cpu_seconds), area);
@@ -59,7 +59,7 @@ impl Comparison {
         Self { sides, speed_up: SpeedUp::new(&sides[0], &sides[1]), agreement }
     }
 
-    /// Which side is faster and by how much, as one would say it, with no more digits than are
+    /// A sentence that says which side is faster and by which factor, with no more digits than are
     /// known and without a full stop.
     pub fn sentence(&self) -> String {
         speed::sentence(&self.sides, self.speed_up.as_ref())

@@ -1,4 +1,4 @@
-//! How the noise of a render went down.
+//! History of the noise of a render over CPU time.
 
 /// Points of noise over CPU time, thinned to lie evenly on a logarithmic axis however long the
 /// render takes and however often it is measured.
@@ -18,9 +18,9 @@ impl NoiseHistory {
             && self.points.last().is_none_or(|last| cpu_seconds >= last[0] * spacing())
     }
 
-    /// Adds the noise after `cpu_seconds` of CPU time. The latest point is always kept; it takes the
-    /// place of the one before where both lie close together. Points that a logarithmic axis cannot
-    /// show, or that go back in time, are left out.
+    /// Adds the noise after `cpu_seconds` of CPU time. The latest point always stays; it replaces
+    /// the one before where both lie close together. Points that a logarithmic axis cannot show, or
+    /// that go back in time, are left out.
     pub fn push(&mut self, cpu_seconds: f64, noise: f64) {
         let is_later = self.points.last().is_none_or(|last| cpu_seconds >= last[0]);
         let can_be_shown = [cpu_seconds, noise].iter().all(|&x| x > 0.0 && x.is_finite());

@@ -1,4 +1,4 @@
-//! A number a pixel: where two films differ and where each of them is noisy.
+//! Maps of two films: their difference and the noise of each.
 
 use glam::UVec2;
 use rayon::prelude::*;
@@ -38,7 +38,7 @@ pub fn noise(film: &Film) -> Vec<f32> {
     variances.iter().map(relative).collect()
 }
 
-/// What `value` says of every pixel of a picture of that size, row by row.
+/// Map of `value` over the pixels of a picture of that size, row by row.
 fn of_pixels(
     film: &Film,
     size: UVec2,

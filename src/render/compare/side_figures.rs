@@ -1,4 +1,4 @@
-//! The figures of one of two films that are compared.
+//! Figures of one side of a comparison.
 
 /// Figures of one side. Colors are linear; gray is (R + G + B) / 3; means run over the pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -13,7 +13,7 @@ pub struct SideFigures {
     pub mean_rgb: [f64; 3],
     /// Mean over the pixels of the variance of the gray mean; none where no pixel has two samples.
     pub variance_of_mean: Option<f64>,
-    /// Standard error of that, none with it.
+    /// Standard error of the variance; `None` where the variance is unknown.
     pub variance_error: Option<f64>,
     /// Relative standard error of the picture, as
     /// [`FilmStats::noise`](crate::render::FilmStats::noise).

@@ -1,4 +1,4 @@
-//! How much faster one setting is than another, and the sentence that says so.
+//! Speed-up of one setting over another, and the sentence that states it.
 
 use super::side_figures::SideFigures;
 use crate::format::{one_part_of, rough};
@@ -7,20 +7,20 @@ use crate::render::estimate::FEWEST_FOR_VARIANCE;
 /// Standard errors on either side of an estimate that hold the truth with 95 %.
 const CONFIDENCE: f64 = 1.96;
 
-/// Relative error of the ratio of two CPU times: the same work repeats to about
-/// this, also when both sides take turns.
+/// Relative error of the ratio of two CPU times: the same work repeats to about this, also when
+/// both sides alternate.
 const TIMING_ERROR: f64 = 0.03;
 
-/// A ratio known no better than to this factor (95 %) is not said to be a tie: it is not known.
+/// Factor of the 95 % interval beyond which a ratio is not said to be a tie: it is unknown.
 const TOO_WIDE: f64 = 1.5;
 
-/// How much faster B reaches a given noise than A: the ratio of their variances times their CPU
-/// times, as variance falls with the inverse of time.
+/// Speed-up of B over A, the factor by which it reaches a given noise faster: the ratio of their
+/// variances times their CPU times, as variance falls with the inverse of time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpeedUp {
     /// The time that A needs over that of B; below 1 where A is the faster.
     pub ratio: f64,
-    /// Standard error of its logarithm, which is nearly that of the ratio relative to it.
+    /// Standard error of the logarithm of the ratio, nearly the relative error of the ratio.
     pub log_error: f64,
 }
 
@@ -51,13 +51,13 @@ impl SpeedUp {
         [self.ratio / factor, self.ratio * factor]
     }
 
-    /// Whether one side is faster beyond doubt, that is with 95 %.
+    /// Whether one side is faster with 95 % confidence.
     pub fn is_clear(&self) -> bool {
         let [low, high] = self.interval();
         low > 1.0 || high < 1.0
     }
 
-    /// Whether so little is known that it is no tie either: it is too early to tell.
+    /// Whether the ratio is too uncertain to call a tie.
     pub fn is_vague(&self) -> bool {
         !self.is_clear() && self.factor() > TOO_WIDE
     }
@@ -80,7 +80,7 @@ impl SpeedUp {
         }
     }
 
-    /// By which factor the ends of the interval are off the ratio.
+    /// Factor between the ratio and the ends of its confidence interval.
     fn factor(&self) -> f64 {
         (CONFIDENCE * self.log_error).exp()
     }
@@ -102,7 +102,7 @@ pub(super) fn sentence(sides: &[SideFigures; 2], speed_up: Option<&SpeedUp>) -> 
     }
 }
 
-/// Why there is nothing to say.
+/// Reason why no speed-up is known.
 fn unknown(sides: &[SideFigures; 2]) -> String {
     match [0, 1].map(|side| sides[side].is_noiseless()) {
         [true, true] => "Neither A nor B has any noise",

@@ -16,7 +16,7 @@ pub(super) struct Tally {
     pub fewest_samples: u32,
     sampled: u64,
     rgb: [f64; 3],
-    /// Pixels whose variance is known; what follows runs over them.
+    /// Pixels whose variance is known; the sums below run over them.
     pub measured: u64,
     pub gray: f64,
     pub variance: f64,

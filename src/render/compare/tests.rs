@@ -35,8 +35,8 @@ fn the_speed_up_is_that_of_variance_and_cost() {
     }
 }
 
-/// Over many seeds the interval misses the truth about as often as it says. The error of the clock
-/// is not in these films, so their interval is taken without it.
+/// Over many seeds the interval misses the truth about as often as it claims. The error of the
+/// clock is not in these films, so their interval is taken without it.
 #[test]
 fn the_interval_covers_the_truth_as_often_as_it_says() {
     let covers = |a: &Film, b: &Film, truth: f64| {
@@ -199,7 +199,7 @@ fn rounding_is_no_difference() {
     assert_eq!(verdict(&a, &brighter, ALARM), Verdict::Differ);
 }
 
-/// What pictures say of themselves is what their films say.
+/// Figures taken from pictures equal those taken from their films.
 #[test]
 fn pictures_tell_the_same_as_their_films() {
     use crate::render::publish::{Picture, resolve, resolve_variance};
@@ -229,9 +229,9 @@ fn pictures_tell_the_same_as_their_films() {
     }
 }
 
-/// Where a rectangle gets all samples, it is known by them, and the rest by what it has.
+/// Where a region gets all samples, figures of the region use its samples, and the rest its own.
 #[test]
-fn a_rectangle_with_all_samples_is_known_better_than_the_rest() {
+fn a_region_with_all_samples_is_known_better_than_the_rest() {
     use crate::render::publish::Picture;
     let area = Area { first: UVec2::new(3, 4), size: UVec2::new(9, 11) };
     let pixels = vec![[1.0; 4]; (SIZE.x * SIZE.y) as usize];

@@ -25,12 +25,12 @@ pub(super) struct Active {
     pub phase: Phase,
     /// Whether the picture at the limit has been shown.
     pub final_shown: bool,
-    /// The better sampler, once it has come and until it is taken.
+    /// The better sampler, from its arrival until it is taken.
     better: Option<Arc<dyn PixelSampler>>,
     /// Paths of the picture that was shown when the render started over. No picture with fewer
     /// paths is shown.
     held_below: u64,
-    /// Seconds that the samples of the film took that it goes on from, if it does.
+    /// Seconds that the samples of a resumed film took, if there is one.
     resumed_seconds: Option<f64>,
 }
 

@@ -4,11 +4,11 @@
 /// The phase that the request being rendered is in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Phase {
-    /// It samples while a better sampler is in the making, with which it will start over.
+    /// The render samples while a better sampler is in the making, with which it will start over.
     Provisional,
-    /// It goes on from a film, but takes no samples before the better sampler has come.
+    /// The render continues a film, but takes no samples before the better sampler has come.
     Holding,
-    /// It samples, and its sampler does not change any more.
+    /// The render samples, and its sampler does not change any more.
     Settled,
     /// A sample could not be taken. Only another request ends this.
     Failed,

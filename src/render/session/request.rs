@@ -7,9 +7,9 @@ use glam::UVec2;
 use crate::render::film::Film;
 use crate::transport::PixelSampler;
 
-/// A render that is asked for.
+/// A request for a render.
 pub struct Request {
-    /// The sampler of its pixels.
+    /// Sampler of the pixels.
     pub sampler: Arc<dyn PixelSampler>,
     /// Width and height in pixels.
     pub size: UVec2,
@@ -29,10 +29,10 @@ pub struct Request {
 /// A render to go on from.
 #[derive(Debug)]
 pub struct Resume {
-    /// The samples it has.
+    /// Film with its samples.
     pub film: Film,
-    /// Seconds of rendering that they took.
+    /// Seconds of rendering that the samples took.
     pub seconds: f64,
-    /// CPU time that the sampling threads spent on them, in seconds.
+    /// CPU time that the sampling threads spent on the film, in seconds.
     pub cpu_seconds: f64,
 }

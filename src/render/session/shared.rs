@@ -12,13 +12,13 @@ use crate::render::pool::Failure;
 use crate::render::publish::{Extras, Picture};
 use crate::transport::PixelSampler;
 
-/// Wishes of the callers. The render thread takes requests, improvements and snapshots out when it
-/// reads them; the rest stands until it is changed.
+/// Messages of the callers. The render thread takes requests, improvements and snapshots out when
+/// it reads them; the rest stands until it is changed.
 #[derive(Default)]
 pub(super) struct Mailbox {
     pub request: Option<Request>,
     pub improvement: Option<Improvement>,
-    /// Where copies of the film go.
+    /// Receivers of copies of the film.
     pub snapshots: Vec<Sender<Film>>,
     pub paused: bool,
     pub extras: Extras,
@@ -29,7 +29,7 @@ pub(super) struct Mailbox {
 /// The outcome of the wait of a provisional request.
 pub(super) struct Improvement {
     pub generation: u64,
-    /// The better sampler; `None`: the request keeps the one it has.
+    /// The better sampler; `None`: the request continues with its first one.
     pub sampler: Option<Arc<dyn PixelSampler>>,
 }
 
@@ -45,13 +45,13 @@ pub(super) struct Shared {
     /// at once.
     pub improved: AtomicBool,
     pub latest: Mutex<Option<Arc<Picture>>>,
-    /// Why the latest request stopped, with its generation.
+    /// Failure that stopped the latest request, with its generation.
     pub failure: Mutex<Option<(u64, Failure)>>,
     on_publish: Box<dyn Fn() + Send + Sync>,
 }
 
 impl Shared {
-    /// No message yet; `on_publish` is called after each picture and each failure.
+    /// A state without messages; `on_publish` is called after each picture and each failure.
     pub fn new(on_publish: impl Fn() + Send + Sync + 'static) -> Self {
         Self {
             mailbox: Mutex::default(),

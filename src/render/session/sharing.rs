@@ -1,10 +1,10 @@
-//! Two sessions that share the machine: they take turns, and the one that has had least is next.
+//! Two sessions that share the machine in time slices: the one that has had least is next.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::render::turns::{self, Share, Usage};
 
-/// The turns of two sessions.
+/// Time slices of two sessions.
 #[derive(Debug, Default)]
 pub struct Sharing {
     state: Mutex<State>,
@@ -19,7 +19,7 @@ struct State {
     share: Share,
 }
 
-/// The token by which one of two sessions asks for its turns.
+/// The token by which one of two sessions asks for a time slice.
 #[derive(Clone, Debug)]
 pub struct TurnToken {
     sharing: Arc<Sharing>,
@@ -27,7 +27,7 @@ pub struct TurnToken {
 }
 
 impl Sharing {
-    /// A token for each side. Neither side counts until it asks for a turn.
+    /// A token for each side. A side does not count until it asks for a time slice.
     pub fn tokens() -> [TurnToken; 2] {
         let sharing = Arc::new(Self::default());
         sharing.state().usages.iter_mut().for_each(|usage| usage.closed = true);
@@ -46,8 +46,8 @@ impl TurnToken {
         self.sharing.state().share = share;
     }
 
-    /// Asks for a turn with what the side has had so far, after which [`TurnToken::end`] must follow;
-    /// false while it is the other's, or the other is still at its own.
+    /// Asks for a time slice with the usage of the side so far, after which [`TurnToken::end`] must
+    /// follow; false while the other side is next or still at work.
     pub(super) fn begin(&self, usage: Usage) -> bool {
         let mut state = self.sharing.state();
         state.usages[self.side] = Usage { closed: false, ..usage };
@@ -59,7 +59,7 @@ impl TurnToken {
         mine
     }
 
-    /// Ends a turn with what the side has had so far.
+    /// Ends a time slice with the usage of the side so far.
     pub(super) fn end(&self, usage: Usage) {
         let mut state = self.sharing.state();
         state.usages[self.side] = usage;
@@ -68,7 +68,7 @@ impl TurnToken {
         }
     }
 
-    /// Wants no turn until it asks again.
+    /// Leaves: the side gets no time slice until it asks again.
     pub(super) fn leave(&self) {
         let mut state = self.sharing.state();
         state.usages[self.side].closed = true;

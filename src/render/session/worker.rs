@@ -17,11 +17,11 @@ use crate::render::progressive::{ProgressiveRender, RenderStep};
 use crate::render::publish::{Extras, Picture};
 use crate::render::turns::Usage;
 
-/// How long a request without a picture is left to get one when the next already waits. Otherwise
-/// a drag whose edits come faster than coarse pictures would show nothing until it ends.
-/// Long enough for a machine whose cores are busy drawing the window.
+/// Time that a request without a picture is left to get one when the next already waits. Otherwise
+/// a drag whose edits come faster than coarse pictures would show nothing until it ends. Long
+/// enough for a machine whose cores are busy drawing the window.
 const PATIENCE: Duration = Duration::from_secs(1);
-/// How long the thread waits before it asks for its turn again. Turns are twenty times as long.
+/// Wait of the thread before it asks for a time slice again. Slices are twenty times as long.
 const TURN: Duration = Duration::from_millis(1);
 
 /// The render thread.
@@ -34,14 +34,14 @@ pub(super) struct Worker {
     extras: Extras,
     /// Whether extras were asked for since the last picture.
     owes_extras: bool,
-    /// The token by which it takes turns with another session, if it does.
+    /// The token by which the session asks for time slices, if it shares the machine.
     turn_token: Option<TurnToken>,
     /// The pixels that get all samples.
     area: Option<Area>,
     job: Option<Active>,
     seconds_per_path: Option<f64>,
     snapshots: Vec<Sender<Film>>,
-    /// Pictures published before, to write the next one into once nobody looks at them.
+    /// Pictures published before, reused for the next one once nobody reads them.
     spare: Vec<Arc<Picture>>,
 }
 
@@ -51,7 +51,7 @@ enum Wait {
     Nothing,
     /// The next message.
     Message,
-    /// Its turn, or the next message.
+    /// The thread waits for its time slice, or the next message.
     Turn,
 }
 
@@ -86,7 +86,7 @@ impl Worker {
         self.take_turns_by(None);
     }
 
-    /// Works if it is this session's turn.
+    /// Works if the session has the time slice.
     fn take_turn(&mut self) -> Wait {
         let Some(token) = self.turn_token.clone() else { return self.work() };
         if !token.begin(self.usage()) {
@@ -151,7 +151,7 @@ impl Worker {
         true
     }
 
-    /// Locks the mailbox when there is nothing to wait for any more.
+    /// Locks the mailbox once there is nothing to wait for any more.
     fn wait_for<'s>(&self, wait: Wait, shared: &'s Shared) -> MutexGuard<'s, Mailbox> {
         let mailbox = lock(&shared.mailbox);
         let nothing_new = |_: &mut Mailbox| shared.epoch.load(Ordering::Relaxed) == self.epoch;
@@ -227,7 +227,7 @@ impl Worker {
         }
     }
 
-    /// One step of the render; returns what there is to wait for after it.
+    /// Does one step of the render; returns what to wait for after it.
     fn work(&mut self) -> Wait {
         let Some(job) = &mut self.job else { return Wait::Message };
         let before = job.progress(self.paused);
@@ -284,7 +284,7 @@ impl Worker {
     fn spare_memory(&mut self) -> Picture {
         let free = self.spare.iter().position(|picture| Arc::strong_count(picture) == 1);
         let free = free.map(|index| self.spare.swap_remove(index));
-        // Two are kept: the latest and the one the window may still be reading.
+        // Two stay: the latest and the one the window may still be reading.
         let excess = self.spare.len().saturating_sub(2);
         self.spare.drain(..excess);
         free.and_then(|picture| Arc::try_unwrap(picture).ok()).unwrap_or_default()

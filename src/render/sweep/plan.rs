@@ -1,13 +1,13 @@
-//! What a sweep tries: every toggle alone and left out, and which of that need not be rendered.
+//! Plan of a sweep: every toggle alone and left out, and which of these need not be rendered.
 
 use crate::transport::strategy::{Preset, Strategy};
 use crate::transport::toggle::Toggle;
 
-/// Why a toggle makes no difference to noise or cost beside the rest of a strategy; none where it
-/// does.
+/// Reason why a toggle makes no difference to noise or cost beside the rest of a strategy; `None`
+/// where it does.
 pub type Idle<'a> = dyn Fn(Toggle, &Strategy) -> Option<&'static str> + 'a;
 
-/// Where a trial stands among the strategies.
+/// Kind of a trial: baseline, full, one toggle alone or left out, or the strategy as set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TrialKind {
     /// Every toggle off.
@@ -18,12 +18,12 @@ pub enum TrialKind {
     Alone(Toggle),
     /// One toggle off.
     Without(Toggle),
-    /// As it is set, if that is none of the others.
+    /// The strategy as it is set, if it equals none of the others.
     AsSet,
 }
 
 impl TrialKind {
-    /// What it is called within a sentence.
+    /// Name of the kind within a sentence.
     pub fn name(self) -> String {
         let lower = |toggle: Toggle| toggle.name().to_lowercase();
         match self {
@@ -35,7 +35,7 @@ impl TrialKind {
         }
     }
 
-    /// The same at the beginning of a line.
+    /// Name of the kind at the beginning of a line.
     pub fn title(self) -> String {
         let name = self.name();
         let mut letters = name.chars();
@@ -45,30 +45,30 @@ impl TrialKind {
     }
 }
 
-/// How a trial comes by its figures.
+/// Source of a trial's figures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TrialSource {
-    /// By rendering.
+    /// The trial is rendered.
     Rendered,
-    /// From another trial that does the same in this scene.
+    /// The figures of another trial that does the same in this scene.
     SameAs {
-        /// That trial.
+        /// The other trial.
         twin: TrialKind,
-        /// Why it does.
+        /// Reason why both do the same.
         why: &'static str,
     },
-    /// Not at all: the strategy cannot be rendered.
+    /// No figures: the strategy cannot be rendered, for this reason.
     Refused(&'static str),
 }
 
 /// A strategy to try.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trial {
-    /// Where it stands.
+    /// Kind of the trial.
     pub kind: TrialKind,
-    /// What is on.
+    /// Strategy of the trial, with its toggles.
     pub strategy: Strategy,
-    /// How it comes by its figures.
+    /// Source of the trial's figures.
     pub source: TrialSource,
 }
 
@@ -116,7 +116,7 @@ fn effective(strategy: &Strategy, idle: &Idle<'_>) -> Strategy {
     idle_toggles.fold(*strategy, |effective, toggle| toggle.set(&effective, false))
 }
 
-/// Why two strategies do the same: what makes the toggle idle in which they differ.
+/// Reason why two strategies do the same: the one for which the toggle they differ in is idle.
 fn why(a: &Strategy, b: &Strategy, idle: &Idle<'_>) -> &'static str {
     let differing = Toggle::all().filter(|toggle| toggle.is_on(a) != toggle.is_on(b));
     let reason = |toggle: Toggle| {
@@ -179,7 +179,7 @@ mod tests {
         assert_eq!(twin, TrialSource::SameAs { twin: TrialKind::Full, why: SUBSUMED });
         assert_eq!(find(&trials, TrialKind::Alone(toggle)).source, TrialSource::Rendered);
 
-        // Smoke that does not glow leaves one strategy and the baseline.
+        // Smoke without emission leaves one strategy and the baseline.
         let dark = |toggle, _: &Strategy| (toggle != Toggle::Probes).then_some(DARK);
         let trials = plan(&Strategy::default(), &dark);
         let rendered = trials.iter().filter(|trial| trial.source == TrialSource::Rendered);

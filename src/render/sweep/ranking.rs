@@ -8,36 +8,36 @@ use crate::transport::toggle::Toggle;
 /// A trial with its figures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RankedTrial {
-    /// What was tried.
+    /// The trial.
     pub trial: Trial,
-    /// Noise and cost: its own, or those of the trial that does the same; none where it could not
-    /// be rendered.
+    /// Noise and cost: the trial's own, or those of the one that does the same; `None` where it
+    /// could not be rendered.
     pub side: Option<SideFigures>,
-    /// How much faster it is than the baseline; none while that is not known at all.
+    /// Speed-up over the baseline; `None` while nothing is known of it.
     pub over_baseline: Option<SpeedUp>,
-    /// How much faster it is than the best, so at most 1.
+    /// Speed-up over the best trial, so at most 1.
     pub over_best: Option<SpeedUp>,
 }
 
-/// What a toggle brings to a shot.
+/// Gain of a toggle in a shot.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Worth {
     /// The toggle.
     pub toggle: Toggle,
-    /// How much faster it is alone than the baseline.
+    /// Speed-up of the toggle alone over the baseline.
     pub alone: Gain,
-    /// How much faster everything is without it, so below 1 where it helps.
+    /// Speed-up of everything without the toggle over everything, so below 1 where it helps.
     pub left_out: Gain,
 }
 
-/// What a toggle brings to the rest of a strategy.
+/// Gain of a toggle beside the rest of a strategy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Gain {
-    /// So much faster for the same noise.
+    /// Speed-up at the same noise.
     Of(SpeedUp),
-    /// Nothing, and why.
+    /// No gain, for this reason.
     Nothing(&'static str),
-    /// It is not known.
+    /// The gain is not known.
     Unknown,
 }
 
@@ -49,11 +49,11 @@ pub struct Ranking {
     pub entries: Vec<RankedTrial>,
     /// The number of the entry to leave on; none while something is not known yet.
     pub leave_on: Option<usize>,
-    /// What each toggle brings, in the order of the strategy.
+    /// Gain of each toggle, in the order of the strategy.
     pub worths: Vec<Worth>,
 }
 
-/// The same film against itself.
+/// Speed-up of a film over itself.
 const SAME: SpeedUp = SpeedUp { ratio: 1.0, log_error: 0.0 };
 
 impl Ranking {
@@ -85,7 +85,7 @@ impl Ranking {
     }
 }
 
-/// Everything on, where nothing is known to be faster, and else what is.
+/// Trial to leave on: everything on where nothing is known to be faster, else the faster one.
 fn leave_on(entries: &[RankedTrial]) -> usize {
     let is_it =
         |entry: &RankedTrial| entry.trial.kind == TrialKind::Full && entry.is_as_good_as_best();
@@ -98,17 +98,17 @@ impl RankedTrial {
         self.over_best.is_some_and(|speed_up| !speed_up.is_clear() && !speed_up.is_vague())
     }
 
-    /// Whether so little is known that it may well be the best or far from it.
+    /// Whether the trial may well be the best or far from it, as its figures are too uncertain.
     pub fn is_vague(&self) -> bool {
         self.over_best.is_some_and(|speed_up| speed_up.is_vague())
     }
 
-    /// Whether its noise and its cost are known.
+    /// Whether noise and cost of the trial are known.
     fn is_known(&self) -> bool {
         self.side.is_some_and(|side| side.is_noiseless() || side.variance_times_time().is_some())
     }
 
-    /// Whether it was rendered itself.
+    /// Whether the trial was rendered itself.
     pub fn is_rendered(&self) -> bool {
         self.trial.source == TrialSource::Rendered
     }
@@ -142,7 +142,7 @@ impl Figures<'_> {
         }
     }
 
-    /// What is sorted by.
+    /// Sort key of a trial.
     fn key(&self, number: usize) -> f64 {
         self.cost(number).unwrap_or(f64::INFINITY)
     }
@@ -151,7 +151,7 @@ impl Figures<'_> {
         self.trials.iter().position(|trial| trial.kind == kind)
     }
 
-    /// From one trial to another, if both have figures.
+    /// Speed-up from one trial to another, if both have figures.
     fn speed_up(&self, from: Option<usize>, to: Option<usize>) -> Option<SpeedUp> {
         let (from, to) = (from?, to?);
         let speed_up = SpeedUp::new(&self.side(from)?, &self.side(to)?)?;
@@ -167,7 +167,7 @@ impl Figures<'_> {
         }
     }
 
-    /// What it brings to go from one trial to another.
+    /// Gain of going from one trial to another.
     fn gain(&self, from: Option<usize>, to: Option<usize>) -> Gain {
         let (Some(from), Some(to)) = (from, to) else { return Gain::Unknown };
         match self.trials[to].source {

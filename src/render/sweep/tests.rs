@@ -47,7 +47,7 @@ fn swept(
     (trials, swept)
 }
 
-/// What is said twice is rendered once, everything else gets its samples, and the pictures do not
+/// Equal strategies are rendered once, everything else gets its samples, and the pictures do not
 /// depend on the number of threads.
 #[test]
 fn every_strategy_gets_its_samples() {
@@ -140,7 +140,7 @@ fn an_interrupt_keeps_what_there_is() {
     let swept_until = swept_until.unwrap();
     assert!(swept_until.interrupted && swept_until.ranking(&trials).best().is_some());
 
-    // Before every pixel has two samples, nothing is known of the noise.
+    // Before every pixel has two samples, the noise is unknown.
     stop.store(false, Ordering::Relaxed);
     let (trials, early) = swept(amount, 2, &stop, &mut |progress| {
         stop.store(matches!(progress, SweepProgress::Rendering(_)), Ordering::Relaxed);

@@ -5,10 +5,10 @@ use super::ranking::{Gain, RankedTrial, Ranking, Worth};
 use crate::format::{one_part_of, percent, rounded};
 use crate::render::compare::SpeedUp;
 
-/// Names in a row before the rest is counted.
+/// Most names in a row before the rest is counted.
 const MOST_NAMES: usize = 4;
 
-/// Which strategy to leave on and what that brings, without a full stop.
+/// The strategy to leave on and its gain, without a full stop.
 pub fn headline(ranking: &Ranking) -> String {
     let Some(best) = ranking.best() else {
         return "There are too few samples to rank the strategies; allow more time for each"
@@ -36,8 +36,8 @@ pub fn headline(ranking: &Ranking) -> String {
     }
 }
 
-/// Which others can't be told from it, what each toggle brings alone and what is lost without it,
-/// one sentence each without a full stop.
+/// The strategies that can't be told from it, the gain of each toggle alone and the loss without
+/// it, one sentence each without a full stop.
 pub fn remarks(ranking: &Ranking) -> Vec<String> {
     let mut remarks = not_told_apart(ranking);
     remarks.extend(brought_alone(ranking));
@@ -45,7 +45,7 @@ pub fn remarks(ranking: &Ranking) -> Vec<String> {
     remarks
 }
 
-/// Which toggles bring something on their own; nothing where that is not known of any.
+/// Sentence on the toggles that gain on their own; `None` where no such gain is known.
 fn brought_alone(ranking: &Ranking) -> Option<String> {
     let known = gains(ranking, |worth| worth.alone)?;
     let mut faster: Vec<_> = known.into_iter().filter(|(_, it)| it.ratio > 1.0).collect();
@@ -58,7 +58,7 @@ fn brought_alone(ranking: &Ranking) -> Option<String> {
     })
 }
 
-/// Which toggles full is slower without.
+/// Sentence on the toggles without which everything is slower.
 fn lost(ranking: &Ranking) -> Option<String> {
     let known = gains(ranking, |worth| worth.left_out)?;
     let mut slower: Vec<_> = known.into_iter().filter(|(_, it)| it.ratio < 1.0).collect();
@@ -84,7 +84,7 @@ fn gains(ranking: &Ranking, gain: fn(&Worth) -> Gain) -> Option<Vec<(String, Spe
     (!known.is_empty()).then(|| known.into_iter().filter(clear).collect())
 }
 
-/// Which strategies can't be told from the one to leave on.
+/// Sentences on the strategies that can't be told from the one to leave on.
 fn not_told_apart(ranking: &Ranking) -> Vec<String> {
     let names = |is_meant: fn(&RankedTrial) -> bool| {
         let others = ranking.entries.iter().enumerate().filter(|(number, entry)| {
@@ -100,7 +100,7 @@ fn not_told_apart(ranking: &Ranking) -> Vec<String> {
     told.map(|(what, names)| format!("{what}: {}", listed(&names))).collect()
 }
 
-/// Names as a sentence lists them.
+/// Names as a sentence lists them, with commas and "and".
 fn listed(names: &[String]) -> String {
     match names {
         [] => String::new(),
@@ -128,7 +128,7 @@ pub fn relative_time(speed_up: &SpeedUp) -> String {
     }
 }
 
-/// Why an entry has no figures of its own; none where it has.
+/// Reason why an entry has no figures of its own; `None` where it has.
 pub fn note(entry: &RankedTrial) -> Option<String> {
     match entry.trial.source {
         TrialSource::Rendered => None,

@@ -1,4 +1,4 @@
-//! Where a volume stands.
+//! Placement of a volume: the transform from its own space to the world.
 
 use glam::{Affine3A, EulerRot, Mat3A, Quat, Vec3, Vec3A};
 

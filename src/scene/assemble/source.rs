@@ -1,5 +1,5 @@
-//! Where a volume's values come from: the grids of a file or the formula of a shape. Both answer
-//! the same questions, so that density, albedo and emission need not know which it is.
+//! Sources of a volume's values: the grids of a file or the formula of a shape. Both have the same
+//! interface, so that density, albedo and emission need not know which it is.
 
 use glam::{Affine3A, DAffine3, Vec3A};
 
@@ -24,7 +24,7 @@ pub(super) struct GridSource<'a> {
     voxel: f32,
 }
 
-/// The one field of a shape.
+/// Source of a shape, which has one field.
 pub(super) struct ShapeSource {
     pub(super) region: Region,
     pub(super) field: ScalarField,
@@ -32,7 +32,7 @@ pub(super) struct ShapeSource {
     pub(super) cell_size: Vec3A,
 }
 
-/// Either of them.
+/// Source of a volume's values: a file or a shape.
 pub(super) enum VolumeSource<'a> {
     Grids(GridSource<'a>),
     Shape(ShapeSource),
@@ -78,7 +78,7 @@ impl<'a> GridSource<'a> {
         Self { file, progress, file_from_local: None, bounds: Aabb::EMPTY, voxel }
     }
 
-    /// From the volume's own space to that of the file.
+    /// Transform from the volume's own space to that of the file.
     pub(super) fn file_from_local(&self) -> DAffine3 {
         self.file_from_local.unwrap_or(DAffine3::IDENTITY)
     }

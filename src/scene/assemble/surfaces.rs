@@ -52,7 +52,7 @@ fn material(settings: &MaterialSettings) -> Material {
     }
 }
 
-/// What a light of the scene file becomes.
+/// Light or surface that a light of the scene file becomes.
 pub(super) enum LightOrSurface {
     /// A light that no ray meets.
     Light(Light),

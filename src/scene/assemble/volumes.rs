@@ -127,7 +127,8 @@ fn properties(
     settings: &VolumeSettings,
     key: &str,
 ) -> Result<MediumProperties> {
-    // Without density the grid is read only where something else needs it: the glow, or the borders.
+    // Without density the grid is read only where something else needs it: emission, or the
+    // borders.
     let needs_density = !settings.density.scale.is_black()
         || settings.emission.times_density()
         || settings.emission_grid().is_none();

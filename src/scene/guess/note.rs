@@ -16,7 +16,7 @@ pub enum About {
 /// A guess in words.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Note {
-    /// Its subject.
+    /// Subject of the note.
     pub about: About,
     /// The guess itself.
     pub text: String,

@@ -1,4 +1,4 @@
-//! Looking at a grid from outside: how thick or bright it is along lines, and where it is at all.
+//! Measuring a grid from outside: its thickness or brightness along lines, and its visible bounds.
 
 use glam::Vec3A;
 

@@ -1,4 +1,4 @@
-//! The roles of the grids of a file, told by name, type, class and range.
+//! Roles of the grids of a file, guessed by name, type, class and range.
 
 use crate::error::Result;
 use crate::scene::cache::{GridValues, PlacedGrid};
@@ -9,9 +9,9 @@ use crate::volume::vdb::GridClass;
 /// A grid of numbers or colors that is worth rendering.
 pub(super) struct Candidate {
     pub(super) grid: PlacedGrid,
-    /// Its largest active value; for colors of the largest channel.
+    /// Largest active value of the grid; for colors of the largest channel.
     pub(super) max: f32,
-    /// The mean of its active values.
+    /// Mean of the grid's active values.
     pub(super) mean: f32,
 }
 
@@ -35,7 +35,7 @@ impl Candidate {
         self.rank(names).is_some()
     }
 
-    /// The place of its name among `names`.
+    /// Position of the grid's name among `names`.
     fn rank(&self, names: &[&str]) -> Option<usize> {
         names.iter().position(|name| self.grid.name.eq_ignore_ascii_case(name))
     }
@@ -64,8 +64,8 @@ pub(super) fn emission(grids: &[Candidate]) -> Option<(&Candidate, Role)> {
     [Role::Emission, Role::Temperature, Role::Flame].into_iter().find_map(best)
 }
 
-/// Every grid of the file that has something above zero and might be seen; grids of other types
-/// are passed over.
+/// All grids of the file that have something above zero and might be seen; grids of other types are
+/// passed over.
 pub(super) fn candidates(
     count: usize,
     mut load: impl FnMut(usize) -> Result<Option<PlacedGrid>>,

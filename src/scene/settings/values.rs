@@ -77,7 +77,7 @@ impl Color {
         }
     }
 
-    /// Whether nothing is left of it.
+    /// Whether all channels are zero.
     pub fn is_black(self) -> bool {
         self.gray() == Some(0.0)
     }

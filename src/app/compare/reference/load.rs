@@ -10,14 +10,14 @@ use crate::render::Picture;
 use crate::scene::settings::CameraSettings;
 use crate::scene::{self, Settings};
 
-/// A reference and what is known about it.
+/// A loaded reference with what it shows.
 #[derive(Debug)]
 pub struct LoadedReference {
-    /// The user's name for it.
+    /// The user's name for the reference.
     pub name: String,
     /// The picture.
     pub reference: Reference,
-    /// The file it came from.
+    /// File that the reference came from.
     pub path: Option<PathBuf>,
     shows: Shows,
 }
@@ -25,15 +25,15 @@ pub struct LoadedReference {
 /// The contents of a reference, as far as known.
 #[derive(Debug)]
 enum Shows {
-    /// Something.
+    /// Unknown contents.
     Unknown,
     /// The view of this camera.
     Camera(CameraSettings),
-    /// This scene.
+    /// A scene with these settings.
     Scene(Box<Settings>),
 }
 
-/// Where a reference comes from.
+/// Origin of a reference: a file, or a picture of the window.
 pub enum ReferenceOrigin {
     /// A file; the name is what the user calls it.
     File(String, PathBuf),
@@ -50,7 +50,7 @@ impl ReferenceOrigin {
 }
 
 impl LoadedReference {
-    /// Takes it from there.
+    /// Loads the reference from its origin.
     ///
     /// # Errors
     /// As [`Reference::load`] and [`Reference::new`].
@@ -68,9 +68,9 @@ impl LoadedReference {
         }
     }
 
-    /// Why errors against it mean little for a render of `settings`, if it is known to show
-    /// something else.
-    pub fn doubt(&self, settings: &Settings) -> Option<&'static str> {
+    /// Reason why errors against the reference mean little for a render of `settings`, if it is
+    /// known to show something else.
+    pub fn warning(&self, settings: &Settings) -> Option<&'static str> {
         match &self.shows {
             Shows::Unknown => None,
             Shows::Camera(camera) if *camera != settings.camera => Some("its camera differs"),
@@ -98,7 +98,7 @@ fn camera(path: &Path) -> Option<CameraSettings> {
 pub struct Loading(mpsc::Receiver<Result<LoadedReference>>);
 
 impl Loading {
-    /// Starts to take it from `origin`; `wake` is called once it is there.
+    /// Starts to load a reference from `origin`; `wake` is called once it is there.
     ///
     /// # Errors
     /// When the system refuses to start a thread.

@@ -11,9 +11,9 @@ use super::gpu::{bind, texture};
 /// The pixels of the framebuffer that a part of the window covers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PixelRect {
-    /// Its upper left pixel.
+    /// Upper left pixel of the canvas.
     pub corner: [i32; 2],
-    /// Its width and height.
+    /// Width and height of the canvas in pixels.
     pub size: UVec2,
 }
 
@@ -26,7 +26,7 @@ impl PixelRect {
         Self { corner: [place.left_px, place.top_px], size: size.into() }
     }
 
-    /// The part of it that lies in `other`, from the corner of that.
+    /// The part of the canvas that lies in `other`, from the corner of that.
     pub fn within(&self, other: &Self) -> Self {
         let corner = IVec2::from(self.corner) - IVec2::from(other.corner);
         let first = corner.max(IVec2::ZERO).as_uvec2().min(other.size);
@@ -43,7 +43,7 @@ pub(super) struct GpuCanvas {
 }
 
 impl GpuCanvas {
-    /// An empty one. `view` holds how it lies in the window.
+    /// An empty canvas. `view` holds its place in the window.
     pub fn new(
         device: &wgpu::Device,
         layout: &wgpu::BindGroupLayout,
@@ -57,17 +57,17 @@ impl GpuCanvas {
         Self { size, target, bindings }
     }
 
-    /// Whether it has that size.
+    /// Whether the canvas has that size.
     pub fn is_of(&self, size: UVec2) -> bool {
         self.size == size
     }
 
-    /// The bindings that copy it to the window.
+    /// Bindings that copy the canvas to the window.
     pub fn bindings(&self) -> &wgpu::BindGroup {
         &self.bindings
     }
 
-    /// Draws the part of it that is `seen`, with a pipeline and what that reads.
+    /// Draws the `seen` part of the canvas, with a pipeline and its bindings.
     pub fn draw(
         &self,
         encoder: &mut wgpu::CommandEncoder,

@@ -1,6 +1,6 @@
-//! The shader of the picture, cut to what is looked at. A software driver works out both sides of
+//! The shader of the picture, specialized for the view. A software driver works out both sides of
 //! every branch for every pixel, so that a curve that is not shown would cost as much as the one
-//! that is: what is the same for a whole picture is settled when its pipeline is made.
+//! that is: choices that hold for a whole picture are made with its pipeline.
 
 use crate::app::picture::look::Look;
 use crate::image::tone::{Channel, ToneCurve};
@@ -8,7 +8,7 @@ use crate::image::tone::{Channel, ToneCurve};
 /// The choices settled for a whole picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Variant {
-    /// How numbers become light, as the shader numbers it.
+    /// Curve from numbers to light, as the shader numbers it.
     curve: u32,
     channel: u32,
     /// Whether a framebuffer pixel covers more than one of the picture.
@@ -23,8 +23,8 @@ const GRID_FROM: f32 = 0.0626;
 const ROUNDING: f32 = 0.001;
 
 impl Variant {
-    /// For `look` at a picture that has `step` pixels per one of the framebuffer, and whose light
-    /// may be coded already.
+    /// Variant for `look` on a picture that has `step` pixels per one of the framebuffer, and whose
+    /// light may be coded already.
     pub fn new(look: Look, step: f32, is_coded: bool) -> Self {
         if is_coded {
             return Self { curve: CODED, channel: 0, is_shrunk: false, has_grid: false };
@@ -106,12 +106,12 @@ impl Pipelines {
         self.canvas_format
     }
 
-    /// The one that copies a canvas to the window.
+    /// Pipeline that copies a canvas to the window.
     pub fn copy(&self) -> &wgpu::RenderPipeline {
         &self.copy
     }
 
-    /// The one that draws `variant` on a canvas.
+    /// Pipeline that draws `variant` on a canvas.
     pub fn of(&mut self, device: &wgpu::Device, variant: Variant) -> &wgpu::RenderPipeline {
         let known = self.made.iter().position(|(made, _)| *made == variant);
         let index = known.unwrap_or_else(|| {

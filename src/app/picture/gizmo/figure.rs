@@ -25,7 +25,7 @@ pub enum Handle {
     Axis(usize),
     /// The point that a spot is aimed at.
     Target,
-    /// Where a sun's light comes from.
+    /// Direction that a sun's light comes from.
     Direction,
 }
 
@@ -39,7 +39,7 @@ pub enum HandlePart {
 }
 
 impl Handle {
-    /// Its name for screen readers.
+    /// Name of the handle for screen readers.
     pub fn name(self) -> &'static str {
         match self {
             Self::Center => "Move light",
@@ -51,7 +51,7 @@ impl Handle {
         }
     }
 
-    /// The effect of dragging it.
+    /// Effect of dragging the handle.
     pub fn help(self) -> &'static str {
         match self {
             Self::Center => "Drag to move the light parallel to the picture.",
@@ -69,7 +69,7 @@ impl Handle {
         }
     }
 
-    /// The shape that it is drawn as.
+    /// Shape that the handle is drawn as.
     pub fn part(self) -> HandlePart {
         match self {
             Self::Axis(axis) => HandlePart::Axis(axis),
@@ -86,7 +86,7 @@ pub struct Figure {
     pub handles: Vec<(Handle, Vec3A)>,
 }
 
-/// Where a light stands; `pivot` for a sun, which stands nowhere.
+/// Position of a light; `pivot` for a sun, which has none.
 pub fn anchor(light: &LightSettings, pivot: Vec3A) -> Vec3A {
     match light.kind {
         LightKind::Sun => pivot,
@@ -100,7 +100,7 @@ pub fn travel(light: &LightSettings) -> Vec3A {
     Vec3A::from(light.direction()).normalize_or(Vec3A::NEG_Z)
 }
 
-/// How far from its pivot the arrow of a sun begins, in lengths of the world.
+/// Distance from its pivot at which the arrow of a sun begins, in lengths of the world.
 pub fn arrow_length(lens: &Lens, pivot: Vec3A) -> f32 {
     lens.length(ARROW, pivot)
 }

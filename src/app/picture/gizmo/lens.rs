@@ -1,4 +1,4 @@
-//! Between the world and the window: where a point is seen, and what lies under a place.
+//! Projection between the world and the window.
 
 use egui::Pos2;
 use glam::{UVec2, Vec2, Vec3A};
@@ -14,18 +14,18 @@ const NEAR: f32 = 1e-4;
 pub struct Lens {
     /// The camera that takes the picture.
     pub camera: Camera,
-    /// Where the picture lies.
+    /// Place of the picture in the window.
     pub view: View,
 }
 
 impl Lens {
-    /// Where a point of the world is seen in the window; `None` for one behind the camera.
+    /// Projection of a point of the world into the window; `None` for one behind the camera.
     pub fn window(&self, point: Vec3A) -> Option<Pos2> {
         let seen = self.camera.view_from_world(point);
         (seen.z > NEAR).then(|| self.place(seen)).filter(|at| at.x.is_finite() && at.y.is_finite())
     }
 
-    /// Where a line of the world is seen, without what is behind the camera.
+    /// Projection of a line of the world, without what is behind the camera.
     pub fn segment(&self, line: [Vec3A; 2]) -> Option<[Pos2; 2]> {
         let [a, b] = line.map(|point| self.camera.view_from_world(point));
         if a.z <= NEAR && b.z <= NEAR {

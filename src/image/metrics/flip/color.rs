@@ -21,7 +21,7 @@ const XYZ_FROM_LINEAR: Mat3A = Mat3A::from_cols_array(&[
     0.950_372_6,
 ]);
 
-/// Its inverse.
+/// Linear sRGB from CIE XYZ, the inverse of the matrix above.
 static LINEAR_FROM_XYZ: LazyLock<Mat3A> = LazyLock::new(|| XYZ_FROM_LINEAR.inverse());
 
 /// XYZ of the white of the screen.
@@ -48,7 +48,7 @@ pub fn linear_from_opponent(opponent: Rgb) -> Rgb {
 }
 
 /// CIELAB of a display-linear color in 0..=1, its a and b made smaller where it is dark: there,
-/// colors look less vivid (Hunt, 1952).
+/// colors appear less vivid (Hunt, 1952).
 pub fn hunt_lab(linear: Rgb) -> Rgb {
     let [x, y, z] = (XYZ_FROM_LINEAR * linear / WHITE).to_array().map(curve);
     let lightness = 116.0 * y - 16.0;

@@ -1,4 +1,4 @@
-//! What the eye no longer resolves: contrast sensitivity as blurs of the three opponent channels.
+//! Contrast sensitivity of the eye as blurs of the three opponent channels.
 
 use std::f64::consts::PI;
 
@@ -32,7 +32,7 @@ pub struct Contrast {
 #[derive(Clone, Debug)]
 struct Kernel {
     taps: Vec<f32>,
-    /// Its part of the sum.
+    /// Weight of this Gaussian in the sum.
     weight: f32,
 }
 

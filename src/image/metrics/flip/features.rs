@@ -17,11 +17,11 @@ pub struct Detectors {
     smooth: Vec<f32>,
     /// First derivative of the Gaussian.
     edge: Vec<f32>,
-    /// Its second derivative.
+    /// Second derivative of the Gaussian, which detects points.
     point: Vec<f32>,
 }
 
-/// How strong the features of every pixel are.
+/// Strength of edges and points in every pixel.
 #[derive(Clone, Debug)]
 pub struct Features {
     edges: Vec<f32>,
@@ -58,7 +58,7 @@ impl Detectors {
 }
 
 impl Features {
-    /// How far the features of every pixel differ, in 0..=1: those that differ more.
+    /// Difference of the features of every pixel, in 0..=1: the larger of edges and points.
     pub fn difference(&self, other: &Self) -> Vec<f32> {
         (&self.edges, &other.edges, &self.points, &other.points)
             .into_par_iter()

@@ -6,7 +6,7 @@ use crate::image::tone::ToneCurve;
 
 type Codes = Vec<[u8; 3]>;
 
-/// Ramps that wrap around, and the same with changes of all kinds: of noise, of color, of blocks.
+/// Ramps that wrap around, and a copy with changes of all kinds: of noise, of color, of blocks.
 fn ramps(size: UVec2) -> (Codes, Codes) {
     let pixels = (0..size.y as i32).flat_map(|y| (0..size.x as i32).map(move |x| (x, y)));
     pixels
@@ -23,7 +23,7 @@ fn ramps(size: UVec2) -> (Codes, Codes) {
 
 fn errors(reference: &Codes, picture: &Codes, size: UVec2, pixels_per_degree: f32) -> ErrorMap {
     let eye = Eye::new(pixels_per_degree).unwrap();
-    let [reference, picture] = [reference, picture].map(|codes| eye.look(codes, size));
+    let [reference, picture] = [reference, picture].map(|codes| eye.filter(codes, size));
     ErrorMap::new(size, difference(&reference, &picture))
 }
 

@@ -18,7 +18,7 @@ fn side(cost: f64, error: f64) -> SideFigures {
     }
 }
 
-/// What each toggle divides variance × time by.
+/// Factor by which each toggle reduces variance × time.
 fn gain(toggle: Toggle) -> f64 {
     match toggle {
         Toggle::EmissionDecoupling => 2.5,
@@ -102,7 +102,7 @@ fn each_toggle_tells_what_it_brings_and_what_is_lost_without_it() {
 }
 
 /// With small errors the best is clearly better than everything on; with larger ones everything on
-/// is as good and stays on; with huge ones nothing can be told.
+/// is as good and stays on; with huge ones no difference is significant.
 #[test]
 fn what_cannot_be_told_apart_is_said_to_be() {
     let of = |error| {
