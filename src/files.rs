@@ -1,27 +1,65 @@
 //! Files as wholes: written whole or not at all, and told apart by what is in them.
 
+mod folder;
+mod identity;
+mod target;
+
 use std::fs::File;
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Seek};
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
+use tempfile::NamedTempFile;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Progress, Result, report};
+use folder::folder_of;
+pub(crate) use identity::Identity;
+pub(crate) use target::Target;
 
 /// Writes a file as a whole or not at all: to a temporary name in the same folder, which takes the
-/// place of `path` once all of it is on the disk.
+/// place of `path` once all of it is on the disk. A symbolic link stays one and leads to the new
+/// content; into a pipe or a device the content is written.
 ///
 /// # Errors
 /// What `write` returns, and where the system refuses; names the file.
 pub(crate) fn replace(path: &Path, write: impl FnOnce(&mut File) -> Result<()>) -> Result<()> {
-    let folder = match path.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    };
+    match Target::of(path)? {
+        Target::File(place) => {
+            let mut file = temporary(path, &place)?;
+            write(file.as_file_mut())?;
+            file.as_file().sync_all().map_err(|e| Error::io(path, e))?;
+            file.persist(place).map_err(|e| Error::io(path, e.error))?;
+            Ok(())
+        }
+        Target::Stream(stream) => {
+            // Formats go back to their beginnings, which a stream cannot.
+            let mut whole = tempfile::tempfile().map_err(|e| Error::io(path, e))?;
+            write(&mut whole)?;
+            whole.rewind().map_err(|e| Error::io(path, e))?;
+            stream.take(&mut whole).map_err(|e| Error::io(path, e))
+        }
+    }
+}
+
+/// Finds out whether [`replace`] could write `path`, by making the temporary file that it would
+/// make. Of a pipe or a device that is known only when it is written.
+///
+/// # Errors
+/// Where the folder takes no new files, or something else than a file is in the way; names the file.
+pub(crate) fn check_writable(path: &Path) -> Result<()> {
+    match Target::of(path)? {
+        Target::File(place) => temporary(path, &place).map(drop),
+        Target::Stream(_) => Ok(()),
+    }
+}
+
+/// A temporary file beside `place`, which is where `path` leads.
+fn temporary(path: &Path, place: &Path) -> Result<NamedTempFile> {
+    let folder = folder_of(place);
+    let refused = |reason: String| Error::invalid(path.display().to_string(), "", reason);
     if !folder.is_dir() {
-        let (file, folder) = (path.display().to_string(), folder.display());
-        let reason = format!("there is no folder {folder}; make it or choose another");
-        return Err(Error::invalid(file, "", reason));
+        let folder = folder.display();
+        return Err(refused(format!("there is no folder {folder}; make it or choose another")));
     }
     let mut builder = tempfile::Builder::new();
     builder.prefix(".flambeau-").suffix(".tmp");
@@ -31,14 +69,16 @@ pub(crate) fn replace(path: &Path, write: impl FnOnce(&mut File) -> Result<()>) 
         // As any new file, less what the user's mask takes away.
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
-    let mut file = builder.tempfile_in(folder).map_err(|e| Error::io(path, e))?;
-    write(file.as_file_mut())?;
-    file.as_file().sync_all().map_err(|e| Error::io(path, e))?;
-    file.persist(path).map_err(|e| Error::io(path, e.error))?;
-    Ok(())
+    builder.tempfile_in(folder).map_err(|error| match error.kind() {
+        std::io::ErrorKind::NotFound => {
+            let folder = folder.display();
+            refused(format!("the folder {folder} takes no new files; choose another"))
+        }
+        _ => Error::io(path, error),
+    })
 }
 
-/// What tells one state of a file from another.
+/// The state of a file, to tell it from others.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Fingerprint {
     /// The file's name.
@@ -53,10 +93,12 @@ impl Fingerprint {
     /// The fingerprint of `content`, which is read to its end.
     ///
     /// # Errors
-    /// When it cannot be read; names it by `name`.
-    pub fn of(name: &str, mut content: impl BufRead) -> Result<Self> {
+    /// When it cannot be read; names it by `name`. [`Error::Cancelled`] where `progress`, which is
+    /// asked after every piece, says so.
+    pub fn of(name: &str, mut content: impl BufRead, progress: Progress) -> Result<Self> {
         let (mut bytes, mut hash) = (0, FNV_OFFSET);
         loop {
+            report(progress, 0.0)?;
             let piece = match content.fill_buf() {
                 Ok(piece) => piece,
                 Err(error) if error.kind() == std::io::ErrorKind::Interrupted => continue,
@@ -76,10 +118,10 @@ impl Fingerprint {
     /// The fingerprint of the file of that name.
     ///
     /// # Errors
-    /// When it cannot be read; names it.
-    pub fn of_file(name: &str) -> Result<Self> {
+    /// As of [`Fingerprint::of`].
+    pub fn of_file(name: &str, progress: Progress) -> Result<Self> {
         let file = File::open(name).map_err(|e| Error::io(name, e))?;
-        Self::of(name, BufReader::with_capacity(1 << 16, file))
+        Self::of(name, BufReader::with_capacity(1 << 16, file), progress)
     }
 }
 
@@ -92,6 +134,7 @@ mod tests {
     use std::io::Write;
 
     use super::*;
+    use crate::error::NO_PROGRESS;
 
     fn put(path: &Path, text: &str) -> Result<()> {
         replace(path, |file| file.write_all(text.as_bytes()).map_err(|e| Error::io(path, e)))
@@ -114,13 +157,43 @@ mod tests {
         assert!(error.contains("no/scene.toml"), "{error}");
     }
 
+    /// A link stays one, and what it leads to is replaced, wherever that is.
+    #[cfg(unix)]
+    #[test]
+    fn writing_follows_links() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        std::fs::create_dir(at("farm")).unwrap();
+        std::fs::write(at("farm/there.exr"), "old").unwrap();
+        for name in ["there.exr", "new.exr"] {
+            std::os::unix::fs::symlink(format!("farm/{name}"), at(name)).unwrap();
+            put(&at(name), "new").unwrap();
+            assert!(at(name).is_symlink(), "{name}");
+            assert_eq!(std::fs::read_to_string(at("farm").join(name)).unwrap(), "new");
+        }
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3);
+    }
+
+    /// Nothing is left behind where a file could be written, and the reason told where not.
+    #[test]
+    fn whether_a_file_could_be_written_is_tried() {
+        let folder = tempfile::tempdir().unwrap();
+        check_writable(&folder.path().join("new")).unwrap();
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+        let refused = |path: &Path| check_writable(path).unwrap_err().to_string();
+        assert!(refused(&folder.path().join("no/new")).contains("no/new: there is no folder"));
+        assert!(refused(folder.path()).contains("it is a folder"));
+        #[cfg(target_os = "linux")]
+        assert!(refused(Path::new("/proc/new")).contains("/proc/new: "));
+    }
+
     #[test]
     fn fingerprints_are_those_of_the_draft() {
         // From the draft's test vectors.
         for (content, hash) in
             [("", "cbf29ce484222325"), ("a", "af63dc4c8601ec8c"), ("foobar", "85944171f73967e8")]
         {
-            let found = Fingerprint::of("x", content.as_bytes()).unwrap();
+            let found = Fingerprint::of("x", content.as_bytes(), NO_PROGRESS).unwrap();
             assert_eq!((found.bytes, found.hash.as_str()), (content.len() as u64, hash));
         }
         let long = "foobar".repeat(30_000);
@@ -129,8 +202,8 @@ mod tests {
         put(&path, &long).unwrap();
         let name = path.to_str().unwrap();
         assert_eq!(
-            Fingerprint::of_file(name).unwrap(),
-            Fingerprint::of(name, long.as_bytes()).unwrap()
+            Fingerprint::of_file(name, NO_PROGRESS).unwrap(),
+            Fingerprint::of(name, long.as_bytes(), NO_PROGRESS).unwrap()
         );
     }
 }

@@ -10,7 +10,7 @@
 //! |---|---|
 //! | `app` | the window (feature `gui`): one file a panel, commands in one enum, one theme |
 //! | [`cli`] | the command line: one file a command |
-//! | [`scene`] | scene files: the one settings struct, its keys, parsing, saving, building |
+//! | [`scene`] | scene files: the one settings struct, its keys, parsing, saving, assembling |
 //! | [`render`] | film, schedule, the threads that sample, pictures for the window, two renders compared |
 //! | [`image`] | EXR, PNG, NPY, tone mapping, maps and plots, references, error metrics |
 //! | [`transport`] | how light moves: read [`transport::path`] first, then [`transport::tracking`] |
@@ -19,6 +19,44 @@
 //! | [`format`](mod@format) | numbers in words |
 //! | [`files`] | writing a file whole or not at all, telling its states apart |
 //! | [`error`] | what can go wrong, in words |
+//!
+//! # A picture
+//!
+//! Text becomes settings, settings a scene, a frame of it a film:
+//!
+//! ```
+//! use std::{path::Path, sync::{Arc, atomic::AtomicBool}};
+//! use flambeau::error::NO_PROGRESS;
+//! use flambeau::image::{png, tone::Tone};
+//! use flambeau::render::{RenderJob, publish, render_headless, schedule::Limits};
+//! use flambeau::scene::{self, Overrides, VolumeCache};
+//! use flambeau::transport::Frame;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let text = "
+//!     camera.position = [0, -4, 0]
+//!     environment.radiance = 0.2
+//!     [[volume]]
+//!     shape = 'sphere'
+//!     radius = 1.0
+//!     density.scale = 2.0
+//!     emission = { mode = 'source', le = [3.0, 1.0, 0.2] }
+//! ";
+//! let settings = scene::parse(text, "fire", Path::new("."), &Overrides::default())?;
+//! let scene = scene::assemble(&settings, &VolumeCache::default(), NO_PROGRESS)?;
+//! let (size, limits) = (glam::UVec2::new(24, 16), Limits { spp: 2, seconds: None });
+//! let sampler = Arc::new(Frame::new(Arc::new(scene), size, settings.film.seed, NO_PROGRESS)?);
+//! let job = RenderJob { sampler, size, limits, resume: None, threads: None };
+//! let film = render_headless(job, &AtomicBool::new(false), &mut |_, _| {})?.film;
+//!
+//! let mut pixels = Vec::new();
+//! publish::resolve(&film, &mut pixels);
+//! let folder = tempfile::tempdir()?;
+//! png::write(&folder.path().join("fire.png"), size, &pixels, Tone::default())?;
+//! assert!(pixels.iter().any(|[red, _, blue, _]| red > blue), "fire is red");
+//! # Ok(())
+//! # }
+//! ```
 //!
 //! # Conventions
 //!

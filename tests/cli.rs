@@ -1,12 +1,19 @@
 //! The program from end to end: what it writes, prints and returns.
 
+#[path = "cli/interrupts.rs"]
+mod interrupts;
+#[path = "cli/losses.rs"]
+mod losses;
+#[path = "cli/path_versions.rs"]
+mod path_versions;
 #[path = "cli/sweep.rs"]
 mod sweep;
 
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
-use assert_cmd::Command;
 use flambeau::image::exr::{read_info, read_snapshot};
+use flambeau::image::npy;
 use serde_json::Value;
 
 const SCENE: &str = r#"
@@ -79,11 +86,27 @@ fn json(path: &Path) -> Value {
     serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap()
 }
 
-fn npy(path: &Path) -> (Vec<u64>, Vec<f32>) {
-    let bytes = std::fs::read(path).unwrap();
-    let file = npyz::NpyFile::new(&bytes[..]).unwrap();
-    (file.shape().to_vec(), file.into_vec().unwrap())
-}
+/// The keys of `--stats`, which scripts read.
+const STATS: [&str; 18] = [
+    "cpu_seconds_render",
+    "cpu_seconds_setup",
+    "cpu_seconds_total",
+    "gray_variance_of_mean",
+    "guard_hits",
+    "height",
+    "mean_relative_variance",
+    "mean_rgb",
+    "non_finite_samples",
+    "paths",
+    "seed",
+    "spp",
+    "strategy",
+    "threads",
+    "tracking_steps",
+    "version",
+    "wall_seconds",
+    "width",
+];
 
 #[test]
 fn render_writes_every_format_and_the_figures() {
@@ -102,38 +125,16 @@ fn render_writes_every_format_and_the_figures() {
         "--threads",
         "2",
     ]);
-    let (shape, values) = npy(&place.path("out.npy"));
-    assert_eq!(shape, [30, 40, 3]);
+    let (size, values) = npy::read(&place.path("out.npy")).unwrap();
+    assert_eq!(size.to_array(), [40, 30]);
     assert_eq!(image::open(place.path("out.png")).unwrap().width(), 40);
     let film = read_snapshot(&place.path("out.exr")).unwrap().film;
     assert_eq!(film.sample_range(), (4, 4));
 
     let stats = json(&place.path("stats.json"));
-    let keys: Vec<&str> = stats.as_object().unwrap().keys().map(String::as_str).collect();
-    let mut expected = vec![
-        "spp",
-        "width",
-        "height",
-        "seed",
-        "threads",
-        "wall_seconds",
-        "cpu_seconds_total",
-        "cpu_seconds_setup",
-        "cpu_seconds_render",
-        "mean_rgb",
-        "gray_variance_of_mean",
-        "mean_relative_variance",
-        "paths",
-        "tracking_steps",
-        "non_finite_samples",
-        "guard_hits",
-        "strategy",
-        "version",
-    ];
-    let mut found = keys.clone();
-    expected.sort_unstable();
-    found.sort_unstable();
-    assert_eq!(found, expected);
+    let mut keys: Vec<&str> = stats.as_object().unwrap().keys().map(String::as_str).collect();
+    keys.sort_unstable();
+    assert_eq!(keys, STATS);
     assert_eq!((&stats["spp"], &stats["seed"]), (&4.into(), &3.into()));
     assert_eq!((&stats["width"], &stats["threads"]), (&40.into(), &2.into()));
     assert_eq!(stats["paths"], 40 * 30 * 4);
@@ -141,7 +142,7 @@ fn render_writes_every_format_and_the_figures() {
     assert_eq!(stats["guard_hits"], 0);
     assert_eq!(stats["strategy"]["majorant_boost"], true);
     for channel in 0..3 {
-        let mean = values.iter().skip(channel).step_by(3).map(|&v| f64::from(v)).sum::<f64>();
+        let mean = values.iter().map(|pixel| f64::from(pixel[channel])).sum::<f64>();
         let mean = mean / (30.0 * 40.0);
         assert!((stats["mean_rgb"][channel].as_f64().unwrap() - mean).abs() < 1e-6 * mean);
         assert!(mean > 0.01);
@@ -320,7 +321,7 @@ fn a_full_standard_error_stops_nothing() {
     // A bare volume has its guesses told, and without --spp there is one more message.
     let volume = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/plume.vdb");
     assert_eq!(status(&["render", volume, "-o", "out.npy", "--size", "4x3"]), Some(0));
-    assert_eq!(npy(&place.path("out.npy")).0, [3, 4, 3]);
+    assert_eq!(npy::read(&place.path("out.npy")).unwrap().0.to_array(), [4, 3]);
     assert_eq!(status(&["render", "absent.toml", "-o", "out.npy"]), Some(1));
 }
 
@@ -513,39 +514,46 @@ fn stop_with(signal: rustix::process::Signal) {
     use std::time::{Duration, Instant};
 
     let place = Place::new();
-    let mut child = Command::new(env!("CARGO_BIN_EXE_flambeau"))
-        .current_dir(place.0.path())
-        .args(["render", "scene.toml", "-o", "cut.exr", "--spp", "1000000", "--size", "200x150"])
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap();
-    std::thread::sleep(Duration::from_millis(700));
-    kill_process(Pid::from_child(&child), signal).unwrap();
-    // As `timeout` does, a second one at once; the program may be done by then.
-    std::thread::sleep(Duration::from_millis(5));
-    let _ = kill_process(Pid::from_child(&child), signal);
-    let start = Instant::now();
-    let status = child.wait().unwrap();
-    assert_eq!(status.code(), Some(130));
-    assert!(start.elapsed() < Duration::from_secs(20), "it went on for {:?}", start.elapsed());
-    let (_, most) = read_snapshot(&place.path("cut.exr")).unwrap().film.sample_range();
+    let film = |name: &str| read_snapshot(&place.path(name)).ok().map(|snapshot| snapshot.film);
+    // A machine with much else to do is given more time to get to the first sample.
+    for patience in [700, 3000, 12_000, 48_000] {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_flambeau"))
+            .current_dir(place.0.path())
+            .args(["render", "scene.toml", "-o", "cut.exr", "--spp", "1000000"])
+            .args(["--size", "200x150"])
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        std::thread::sleep(Duration::from_millis(patience));
+        kill_process(Pid::from_child(&child), signal).unwrap();
+        // As `timeout` does, a second one at once; the program may be done by then.
+        let _ = kill_process(Pid::from_child(&child), signal);
+        let start = Instant::now();
+        let status = child.wait().unwrap();
+        assert!(start.elapsed() < Duration::from_secs(20), "it went on for {:?}", start.elapsed());
+        if film("cut.exr").is_some() {
+            assert_eq!(status.code(), Some(130));
+            break;
+        }
+    }
+    let (_, most) = film("cut.exr").expect("nothing was rendered").sample_range();
     assert!(most > 0);
 
     let spp = (most + 1).to_string();
     let common = ["render", "scene.toml", "--size", "200x150", "--spp", &spp];
     place.succeed(&[&common[..], &["-o", "resumed.exr", "--resume", "cut.exr"]].concat());
     place.succeed(&[&common[..], &["-o", "all.exr"]].concat());
-    let film = |name: &str| read_snapshot(&place.path(name)).unwrap().film;
-    assert_eq!(film("resumed.exr"), film("all.exr"));
+    assert!(film("resumed.exr").is_some() && film("resumed.exr") == film("all.exr"));
 }
 
 #[test]
 fn a_time_limit_ends_the_render() {
     let place = Place::new();
-    place.succeed(&["render", "scene.toml", "-o", "out.npy", "--time", "0.3", "--stats", "s.json"]);
+    let render = ["render", "scene.toml", "-o", "out.npy", "--preset", "baseline"];
+    place.succeed(&[&render[..], &["--time", "1", "--stats", "s.json"]].concat());
     let stats = json(&place.path("s.json"));
     assert!(stats["spp"].as_f64().unwrap() > 4.0, "the scene's spp was taken for a limit");
-    assert!((0.3..10.0).contains(&stats["wall_seconds"].as_f64().unwrap()));
+    assert!((1.0..10.0).contains(&stats["wall_seconds"].as_f64().unwrap()));
 }
 
 #[test]
@@ -650,7 +658,7 @@ fn info_tells_what_is_in_a_file() {
 fn replay_prints_the_path_that_was_rendered() {
     let place = Place::new();
     place.succeed(&["render", "scene.toml", "-o", "out.npy", "--spp", "1"]);
-    let (_, values) = npy(&place.path("out.npy"));
+    let (_, values) = npy::read(&place.path("out.npy")).unwrap();
     for (x, y) in [(20, 14), (3, 27), (33, 8)] {
         let pixel = format!("{x},{y}");
         let text = place.succeed(&["replay", "scene.toml", "--pixel", &pixel, "--sample", "0"]);
@@ -658,7 +666,6 @@ fn replay_prints_the_path_that_was_rendered() {
         let beauty = text.lines().find_map(|line| line.trim().strip_prefix("beauty (")).unwrap();
         let beauty: Vec<f32> =
             beauty.trim_end_matches(')').split(", ").map(|v| v.parse().unwrap()).collect();
-        let at = (y * 40 + x) * 3;
-        assert_eq!(beauty, values[at..at + 3], "pixel {pixel}: {text}");
+        assert_eq!(beauty, values[y * 40 + x][..3], "pixel {pixel}: {text}");
     }
 }

@@ -144,6 +144,24 @@ fn a_film_of_another_size_is_refused() {
     assert!(text.contains("3 x 4") && text.contains("75 x 50"), "{text}");
 }
 
+/// Where setting up has taken all of the time, there is a whole picture all the same, and no more.
+#[test]
+fn without_any_time_every_pixel_gets_one_sample() {
+    let job = |resume, seconds| RenderJob {
+        sampler: Counting::new(u64::MAX),
+        size: SIZE,
+        limits: Limits { spp: 0, seconds: Some(seconds) },
+        resume,
+        threads: Some(2),
+    };
+    let interrupt = AtomicBool::new(false);
+    let done = render_headless(job(None, 0.0), &interrupt, &mut |_, _| {}).unwrap();
+    assert!(!done.interrupted);
+    assert_eq!(done.film.sample_range(), (1, 1));
+    let again = render_headless(job(Some(done.film), 0.0), &interrupt, &mut |_, _| {}).unwrap();
+    assert_eq!(again.film.sample_range(), (1, 1));
+}
+
 #[test]
 fn the_time_limit_ends_a_render_without_samples_limit() {
     let sampler = Counting::new(u64::MAX);

@@ -41,6 +41,7 @@ enum Folder {
 const SCENES: &str = "benches/noise/scenes";
 
 /// Every scene.
+#[allow(clippy::too_many_lines, reason = "a table with one row for each scene")]
 pub fn all() -> Vec<BenchScene> {
     let own = |name, shows, file| BenchScene {
         name,

@@ -13,12 +13,14 @@ use std::time::Instant;
 use clap::Args;
 use glam::UVec2;
 
+use super::clashes::{Named, files_of_scene};
 use super::console::{print, progress_bar, warn, warn_of_lost_samples};
 use super::cpu_time::process_seconds;
 use super::exit::{Exit, Refusal};
 use super::failed_path;
 use super::interrupt::listen_for_interrupt;
 use super::outputs::make_folder;
+use super::rescue;
 use super::scene_source::SceneArguments;
 use super::snapshot_header::header;
 use super::stats::Spent;
@@ -35,6 +37,17 @@ use errors::Errors;
 use sides::StrategyChoice;
 use table::{CompareTable, SideRow};
 
+/// What is written to the folder of the results.
+const FILES: [&str; 8] = [
+    "table.txt",
+    "table.json",
+    "a.exr",
+    "b.exr",
+    "difference.png",
+    "noise_a.png",
+    "noise_b.png",
+    "noise_over_time.png",
+];
 /// CPU seconds of each side where the command line says nothing.
 const DEFAULT_SECONDS: f64 = 10.0;
 
@@ -87,10 +100,13 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
     let reference = arguments.reference.as_deref();
     let reference = reference.map(|path| errors::load(path, size)).transpose()?;
     if let Some(folder) = &arguments.output {
-        make_folder(folder)?;
+        let mut reads = files_of_scene(arguments.scene.name(), &shared);
+        let given = arguments.reference.as_deref();
+        reads.extend(given.map(|path| Named::new("the reference", path)));
+        make_folder(folder, &FILES, &reads)?;
     }
     let files = match arguments.output.is_some() {
-        true => scene::fingerprints(&shared)?,
+        true => scene::fingerprints(&shared, &go_on)?,
         false => Vec::new(),
     };
     let scene = scene::assemble(&shared, &cache, &go_on)?;
@@ -100,6 +116,9 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
     let wall_setup = start.elapsed().as_secs_f64();
 
     let pair = show_progress(job(arguments, &sides), &interrupt)?;
+    if pair.interrupted && pair.sides.iter().any(|side| side.film.totals.paths == 0) {
+        return Err(Error::Cancelled.into());
+    }
     let comparison = compared(&pair);
     let spent = [0, 1].map(|side| Spent {
         wall: wall_setup + pair.sides[side].seconds,
@@ -119,7 +138,7 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
     conclude(arguments, &sides, &pair)
 }
 
-/// Writes the table and the pictures; what fails does not keep the rest from being written.
+/// Writes the table and the pictures, to another folder where this one does not take all of them.
 fn write(
     folder: &Path,
     arguments: &Arguments,
@@ -129,8 +148,10 @@ fn write(
 ) -> Result<()> {
     let names = [format!("A {}", arguments.a.text()), format!("B {}", arguments.b.text())];
     let words = (&names, table.sentence.as_str());
-    let written = table.write(folder);
-    pair.pool.install(|| pictures::write_all(folder, pair, headers, words)).and(written)
+    rescue::write_folder(folder, &|folder| {
+        let written = table.write(folder);
+        pair.pool.install(|| pictures::write_all(folder, pair, headers, words)).and(written)
+    })
 }
 
 /// The settings of A and of B: those they share, each with its own strategy.

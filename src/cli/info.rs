@@ -103,6 +103,7 @@ fn snapshot(info: &Info) -> String {
         return report.0;
     };
     report.row("version", &header.version);
+    report.row("path version", header.path_version.to_string());
     report.row("samples", format!("{} per pixel", info.samples));
     report.row("seed", header.seed.to_string());
     for file in &header.files {

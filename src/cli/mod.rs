@@ -1,5 +1,6 @@
 //! The command line: one file a command. `main` parses, runs and reports.
 
+mod clashes;
 mod compare;
 mod console;
 pub mod cpu_time;
@@ -11,6 +12,7 @@ mod keys;
 mod outputs;
 mod render;
 mod replay;
+mod rescue;
 mod scene_source;
 mod snapshot_header;
 mod speed_up_row;
@@ -24,6 +26,8 @@ use clap::{Parser, Subcommand};
 
 use console::warn;
 use exit::{Exit, Refusal};
+
+use crate::error::Error;
 
 /// Interactive, progressive preview of fire, smoke, fog and cloud.
 #[derive(Debug, Parser)]
@@ -79,7 +83,10 @@ pub fn run() -> ExitCode {
         None => open_window(arguments.scene),
     };
     let exit = result.unwrap_or_else(|refusal| {
-        warn(&refusal.error.to_string());
+        match refusal.error {
+            Error::Cancelled => warn("interrupted before the first sample; nothing was written"),
+            error => warn(&error.to_string()),
+        }
         refusal.exit
     });
     ExitCode::from(exit as u8)

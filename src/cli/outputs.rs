@@ -3,8 +3,11 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use super::clashes::{Named, refuse_clashes};
+use super::exit::Refusal;
+use super::rescue;
 use crate::error::{Error, Result};
-use crate::files;
+use crate::files::{self, check_writable};
 use crate::image::tone::Tone;
 use crate::image::{exr, npy, png};
 use crate::render::Film;
@@ -35,6 +38,11 @@ impl std::str::FromStr for Output {
             "exr" => Format::Exr,
             "png" => Format::Png,
             "npy" => Format::Npy,
+            _ if text == "-" => {
+                let reason = "standard output has no ending that says the format; name a file that \
+                              ends in .exr, .png or .npy";
+                return Err(reason.to_owned());
+            }
             _ => return Err("the name must end in .exr, .png or .npy".to_owned()),
         };
         Ok(Self { path, format })
@@ -52,49 +60,43 @@ impl Output {
         self.format == Format::Exr
     }
 
-    /// Fails early where it could not be written in the end.
-    pub fn check_folder(&self) -> Result<()> {
-        check_folder(&self.path)
-    }
-}
-
-/// Fails where the folder of `path` does not exist.
-pub fn check_folder(path: &Path) -> Result<()> {
-    match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => {
-            let reason = format!("there is no folder {}; make it first", folder.display());
-            Err(Error::invalid(path.display().to_string(), "", reason))
+    /// As the file is told from what the command reads.
+    pub fn named(&self) -> Named<'_> {
+        match self.is_snapshot() {
+            true => Named::snapshot("-o", &self.path),
+            false => Named::new("-o", &self.path),
         }
-        _ => Ok(()),
     }
 }
 
-/// Writes every output. One that fails does not keep the others from being written; the first
-/// error is returned.
+/// Writes every output, to another place where its own fails. One that fails does not keep the others
+/// from being written; the last error is returned, and the others are told.
 pub fn write_all(outputs: &[Output], film: &Film, header: &exr::SnapshotHeader) -> Result<()> {
     let mut pixels = Vec::new();
     if outputs.iter().any(|output| output.format != Format::Exr) {
         resolve(film, &mut pixels);
     }
-    let mut first = Ok(());
-    for Output { path, format } in outputs {
-        let result = match format {
+    let write = |output: &Output| {
+        rescue::write_file(&output.path, &|path| match output.format {
             Format::Exr => exr::write(path, film, header),
             Format::Png => png::write(path, film.size(), &pixels, Tone::default()),
             Format::Npy => npy::write(path, film.size(), &pixels),
-        };
-        first = first.and(result);
-    }
-    first
+        })
+    };
+    rescue::told(outputs.iter().map(write))
 }
 
-/// Makes the folder of the results. Called before rendering, so that nothing is rendered in vain.
-pub fn make_folder(folder: &Path) -> Result<()> {
-    check_folder(folder)?;
-    match folder.is_dir() {
-        true => Ok(()),
-        false => std::fs::create_dir(folder).map_err(|e| Error::io(folder, e)),
+/// Makes the folder of the results and finds out whether it takes `files`, before anything is
+/// rendered in vain and without harm to what is read.
+pub(super) fn make_folder(folder: &Path, files: &[&str], reads: &[Named]) -> Result<(), Refusal> {
+    let files: Vec<PathBuf> = files.iter().map(|name| folder.join(name)).collect();
+    let writes: Vec<Named> = files.iter().map(|path| Named::new("-o", path)).collect();
+    refuse_clashes(reads, &writes)?;
+    if !folder.is_dir() {
+        std::fs::create_dir(folder).map_err(|e| Error::io(folder, e))?;
     }
+    files.iter().try_for_each(|path| check_writable(path))?;
+    Ok(())
 }
 
 /// Writes a file of text, whole or not at all.
@@ -116,5 +118,6 @@ mod tests {
         assert_eq!(format("B.PNG"), Ok(Format::Png));
         assert_eq!(format("x.y.npy"), Ok(Format::Npy));
         assert!(format("exr").is_err() && format("a.jpg").is_err());
+        assert!(format("-").unwrap_err().contains("standard output"));
     }
 }

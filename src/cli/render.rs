@@ -8,20 +8,21 @@ use std::time::Instant;
 use clap::Args;
 use glam::UVec2;
 
+use super::clashes::{Named, files_of_scene, refuse_clashes};
 use super::console::{progress_bar, warn, warn_of_lost_samples};
 use super::cpu_time::process_seconds;
 use super::exit::{Exit, Refusal};
 use super::failed_path;
 use super::interrupt::listen_for_interrupt;
-use super::outputs::{Output, check_folder, write_all};
+use super::outputs::{Output, write_all};
 use super::scene_source::SceneArguments;
 use super::snapshot_header::header;
-use super::stats::{Spent, Stats};
+use super::stats::{Spent, Stats, is_standard_output};
 use super::values::parse_seconds;
-use crate::error::{Error, Result};
-use crate::files::Fingerprint;
+use crate::error::{Error, Progress, Result};
+use crate::files::{Fingerprint, check_writable};
 use crate::format;
-use crate::image::exr::{Snapshot, SnapshotHeader, read_snapshot};
+use crate::image::exr::{Snapshot, SnapshotHeader, read_snapshot_unless};
 use crate::render::estimate::samples_per_pixel;
 use crate::render::schedule::Limits;
 use crate::render::{Film, FilmStats, Headless, RenderJob, render_headless};
@@ -42,13 +43,14 @@ pub struct Arguments {
     /// Samples per pixel.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
     spp: Option<u32>,
-    /// Stop after this many seconds of rendering.
+    /// Stop this many seconds after the start, setting up included. Set-up is never cut short, and
+    /// every pixel gets one sample: where the time is too short for both, it ends after them.
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
     time: Option<f64>,
     /// Number of threads; one a core if absent. The picture does not depend on it.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    /// Write the figures of the render as JSON.
+    /// Write the figures of the render as JSON; `-` is standard output.
     #[arg(long, value_name = "STATS.json")]
     stats: Option<PathBuf>,
     /// Go on from a snapshot of the same scene.
@@ -66,13 +68,13 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
         warn("ray marching is on (strategy.integrator): the picture is biased");
     }
     let limits = limits(arguments, &mut settings);
-    check_folders(arguments)?;
+    check_places(arguments, &settings)?;
     let files = match arguments.resume.is_some() || writes_snapshot(arguments) {
-        true => scene::fingerprints(&settings)?,
+        true => scene::fingerprints(&settings, &go_on)?,
         false => Vec::new(),
     };
     let resumed = match &arguments.resume {
-        Some(path) => Some(resume(path, &settings, &files)?),
+        Some(path) => Some(resume(path, &settings, &files, &go_on)?),
         None => None,
     };
     let scene = scene::assemble(&settings, &cache, &go_on)?;
@@ -83,10 +85,17 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
         None => (None, Spent::default()),
     };
     let size = UVec2::from_array(settings.film.size);
-    let sampler = Arc::new(Frame::new(Arc::new(scene), size, settings.film.seed, &go_on)?);
-    let threads = arguments.threads.map(usize::from);
-    let job = RenderJob { sampler, size, limits, resume: film, threads };
+    let frame = Frame::new(Arc::new(scene), size, settings.film.seed, &go_on)?;
+    let paths_before = film.as_ref().map_or(0, |film| film.totals.paths);
+    let job = RenderJob {
+        sampler: Arc::new(frame),
+        size,
+        limits: limits_left(limits, start),
+        resume: film,
+        threads: arguments.threads.map(usize::from),
+    };
     let render = show_progress(job, &interrupt)?;
+    refuse_nothing(arguments, &settings, &render, paths_before)?;
     let spent = before.plus(Spent {
         wall: start.elapsed().as_secs_f64(),
         cpu_setup,
@@ -113,10 +122,51 @@ fn limits(arguments: &Arguments, settings: &mut Settings) -> Limits {
     Limits { spp, seconds: arguments.time }
 }
 
-/// Finds out before hours of rendering what could not be written after them.
-fn check_folders(arguments: &Arguments) -> Result<()> {
-    arguments.output.iter().try_for_each(Output::check_folder)?;
-    arguments.stats.as_deref().map_or(Ok(()), check_folder)
+/// What is left of the limits once everything is set up.
+fn limits_left(limits: Limits, start: Instant) -> Limits {
+    let Some(all) = limits.seconds else { return limits };
+    let spent = start.elapsed().as_secs_f64();
+    if spent >= all {
+        warn(&format!(
+            "setting up took {spent:.1} s, all of --time {all}; every pixel gets one sample all the \
+             same"
+        ));
+    }
+    Limits { seconds: Some((all - spent).max(0.0)), ..limits }
+}
+
+/// Finds out before hours of rendering what would overwrite an input after them, or could not be
+/// written.
+fn check_places(arguments: &Arguments, settings: &Settings) -> Result<(), Refusal> {
+    let stats = arguments.stats.as_deref().filter(|path| !is_standard_output(path));
+    let mut reads = files_of_scene(arguments.scene.name(), settings);
+    let snapshot = arguments.resume.as_deref();
+    reads.extend(snapshot.map(|path| Named::snapshot("the snapshot to go on from", path)));
+    let mut writes: Vec<Named> = arguments.output.iter().map(Output::named).collect();
+    writes.extend(stats.map(|path| Named::new("--stats", path)));
+    refuse_clashes(&reads, &writes)?;
+    arguments.output.iter().map(Output::path).chain(stats).try_for_each(check_writable)?;
+    Ok(())
+}
+
+/// Refuses to write anything where the render was broken off before its first sample, so that an
+/// older picture stays.
+fn refuse_nothing(
+    arguments: &Arguments,
+    settings: &Settings,
+    render: &Headless,
+    paths_before: u64,
+) -> Result<()> {
+    match &render.failure {
+        _ if render.film.totals.paths > paths_before => Ok(()),
+        Some(failure) => {
+            let scene = arguments.scene.in_words(settings);
+            let reason = failed_path::in_words(failure, &scene);
+            Err(Error::invalid("", "", format!("{reason}; nothing was written")))
+        }
+        None if render.interrupted => Err(Error::Cancelled),
+        None => Ok(()),
+    }
 }
 
 fn writes_snapshot(arguments: &Arguments) -> bool {
@@ -124,8 +174,13 @@ fn writes_snapshot(arguments: &Arguments) -> bool {
 }
 
 /// The snapshot to go on from, if it is one of this scene with the `files` it has now.
-fn resume(path: &Path, settings: &Settings, files: &[Fingerprint]) -> Result<Snapshot> {
-    let snapshot = read_snapshot(path)?;
+fn resume(
+    path: &Path,
+    settings: &Settings,
+    files: &[Fingerprint],
+    go_on: Progress,
+) -> Result<Snapshot> {
+    let snapshot = read_snapshot_unless(path, go_on)?;
     let name = path.display().to_string();
     let compatibility = scene::compatibility(&snapshot.header, &name, settings, files)?;
     if let Some(scene::Blocker { what, fix }) = compatibility.blocker {
@@ -177,8 +232,12 @@ fn finish(
     let written = render.pool.install(|| write_all(&arguments.output, film, &header));
     if let Some(path) = &arguments.stats {
         let threads = render.pool.threads();
-        Stats::new(film, &figures, spent, settings.film.seed, threads, settings.strategy)
-            .write(path)?;
+        let stats =
+            Stats::new(film, &figures, spent, settings.film.seed, threads, settings.strategy);
+        if let Err(refusal) = stats.write(path) {
+            written.unwrap_or_else(|error| warn(&error.to_string()));
+            return Err(refusal);
+        }
     }
     written?;
     report(arguments, render, &figures);
@@ -201,4 +260,21 @@ fn report(arguments: &Arguments, render: &Headless, figures: &FilmStats) {
         names.join(", ")
     ));
     warn_of_lost_samples(&render.film.totals, "");
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::*;
+
+    /// The time runs from the start of the program, and never below nothing.
+    #[test]
+    fn setting_up_takes_its_share_of_the_time() {
+        let Some(start) = Instant::now().checked_sub(Duration::from_secs(5)) else { return };
+        let left = |seconds| limits_left(Limits { spp: 3, seconds }, start);
+        assert_eq!(left(None), Limits { spp: 3, seconds: None });
+        assert!((994.0..=995.0).contains(&left(Some(1000.0)).seconds.unwrap()));
+        assert_eq!(left(Some(4.0)), Limits { spp: 3, seconds: Some(0.0) });
+    }
 }

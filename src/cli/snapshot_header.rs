@@ -5,6 +5,7 @@ use crate::error::{Error, Result};
 use crate::files::Fingerprint;
 use crate::image::exr::SnapshotHeader;
 use crate::scene::{self, Settings};
+use crate::transport::PATH_VERSION;
 
 /// The header of a snapshot of `settings` that read these files and took this time.
 ///
@@ -21,6 +22,7 @@ pub fn header(
             .map_err(|e| Error::invalid("", "strategy", e.to_string()))?,
         seed: settings.film.seed,
         version: env!("CARGO_PKG_VERSION").to_owned(),
+        path_version: PATH_VERSION,
         wall_seconds: spent.wall,
         cpu_seconds_setup: spent.cpu_setup,
         cpu_seconds_render: spent.cpu_render,

@@ -5,7 +5,10 @@ use std::path::Path;
 
 use serde::Serialize;
 
-use crate::error::{Error, Result};
+use super::console::print;
+use super::exit::Refusal;
+use super::rescue;
+use crate::error::Error;
 use crate::files;
 use crate::render::{Film, FilmStats};
 use crate::transport::strategy::Strategy;
@@ -56,6 +59,11 @@ pub struct Stats {
     version: &'static str,
 }
 
+/// Whether the name stands for standard output.
+pub fn is_standard_output(path: &Path) -> bool {
+    path == Path::new("-")
+}
+
 impl Stats {
     /// The figures of `film`, measured in `figures`.
     pub fn new(
@@ -90,10 +98,16 @@ impl Stats {
         }
     }
 
-    /// Writes them as JSON.
-    pub fn write(&self, path: &Path) -> Result<()> {
+    /// Writes them as JSON, to another place where `path` fails.
+    pub fn write(&self, path: &Path) -> Result<(), Refusal> {
         let json = serde_json::to_string_pretty(self)
             .map_err(|e| Error::invalid(path.display().to_string(), "", e.to_string()))?;
-        files::replace(path, |file| writeln!(file, "{json}").map_err(|e| Error::io(path, e)))
+        if is_standard_output(path) {
+            return print(&format!("{json}\n"));
+        }
+        rescue::write_file(path, &|path| {
+            files::replace(path, |file| writeln!(file, "{json}").map_err(|e| Error::io(path, e)))
+        })?;
+        Ok(())
     }
 }

@@ -10,12 +10,14 @@ use clap::Args;
 use glam::UVec2;
 use indicatif::ProgressBar;
 
+use super::clashes::files_of_scene;
 use super::console::{print, progress_bar, warn, warn_of_lost_samples};
 use super::cpu_time::process_seconds;
 use super::exit::{Exit, Refusal};
 use super::failed_path;
 use super::interrupt::listen_for_interrupt;
 use super::outputs::make_folder;
+use super::rescue;
 use super::scene_source::SceneArguments;
 use super::values::parse_seconds;
 use crate::error::{Error, Result};
@@ -28,6 +30,9 @@ use crate::scene::effect::no_effect_with;
 use crate::scene::{self, Settings, VolumeCache};
 use crate::transport::Scene;
 use table::SweepTable;
+
+/// What is written to the folder of the results.
+const FILES: [&str; 3] = ["table.txt", "table.json", "chart.png"];
 
 #[derive(Debug, Args)]
 pub struct Arguments {
@@ -60,7 +65,7 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
         settings.film.size = quick_size(settings.film.size.into()).into();
     }
     if let Some(folder) = &arguments.output {
-        make_folder(folder)?;
+        make_folder(folder, &FILES, &files_of_scene(arguments.scene.name(), &settings))?;
     }
     let scene = scene::assemble(&settings, &cache, &go_on)?;
     let trials =
@@ -68,6 +73,10 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
     let pool = Pool::new(arguments.threads.map(usize::from), Priority::Normal)?;
     let cpu_before = process_seconds();
     let swept = show_progress(arguments, &settings, (&scene, &trials), &pool, &interrupt)?;
+    let paths: u64 = swept.tried.iter().flatten().map(|tried| tried.totals.paths).sum();
+    if swept.interrupted && paths == 0 {
+        return Err(Error::Cancelled.into());
+    }
     let cpu_seconds = process_seconds() - cpu_before;
     let ranking = swept.ranking(&trials);
     let table = SweepTable::new(
@@ -77,7 +86,9 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
     );
     print(&table.text())?;
     if let Some(folder) = &arguments.output {
-        table.write(folder).and(chart::write(&folder.join("chart.png"), &ranking))?;
+        rescue::write_folder(folder, &|folder| {
+            table.write(folder).and(chart::write(&folder.join("chart.png"), &ranking))
+        })?;
     }
     conclude(arguments, &settings, (&trials, &swept, &ranking))
 }

@@ -16,7 +16,7 @@ use glam::UVec2;
 pub use super::exr_header::SnapshotHeader;
 use super::exr_header::{Attributes, attributes};
 use super::exr_layout::{SAMPLES, channel_names, push_pixel, state_from, state_names, words_at};
-use crate::error::{Error, Result};
+use crate::error::{Error, NO_PROGRESS, Progress, Result, report};
 use crate::files;
 use crate::render::film::{Film, Totals};
 
@@ -122,6 +122,14 @@ pub struct Snapshot {
 /// # Errors
 /// When it cannot be read, was not written by [`write()`], or is damaged.
 pub fn read_snapshot(path: &Path) -> Result<Snapshot> {
+    read_snapshot_unless(path, NO_PROGRESS)
+}
+
+/// The same as [`read_snapshot`] unless it is given up on the way.
+///
+/// # Errors
+/// Those of [`read_snapshot`], and [`Error::Cancelled`] where `progress` says so.
+pub fn read_snapshot_unless(path: &Path, progress: Progress) -> Result<Snapshot> {
     let reader = open(path)?;
     let info = info(path, reader.meta_data())?;
     let Some(header) = info.header else {
@@ -137,7 +145,7 @@ pub fn read_snapshot(path: &Path) -> Result<Snapshot> {
         return Err(invalid(path, "", reason));
     }
     let mut film = Film::new(info.size)?;
-    let paths = read_state(path, reader, &mut film)?;
+    let paths = read_state(path, reader, &mut film, progress)?;
     // What can be counted is not taken on trust.
     film.totals = Totals { paths, ..info.totals };
     if film.totals.non_finite > paths || film.totals.guard_hits > paths {
@@ -176,7 +184,12 @@ pub fn read_picture(path: &Path) -> Result<(UVec2, Vec<[f32; 4]>)> {
 }
 
 /// Fills `film` from the state of every pixel; returns the number of paths.
-fn read_state(path: &Path, reader: Reader<BufReader<File>>, film: &mut Film) -> Result<u64> {
+fn read_state(
+    path: &Path,
+    reader: Reader<BufReader<File>>,
+    film: &mut Film,
+    progress: Progress,
+) -> Result<u64> {
     let Some(part) = reader.headers().first() else { return Ok(0) };
     let mut state = State::new(path, part, film)?;
     let mut failure = None;
@@ -184,7 +197,7 @@ fn read_state(path: &Path, reader: Reader<BufReader<File>>, film: &mut Film) -> 
         |chunks| {
             chunks.decompress_parallel(false, |data, block| {
                 let restored = match data.headers.first() {
-                    Some(part) => state.restore(part, &block),
+                    Some(part) => report(progress, 0.0).and_then(|()| state.restore(part, &block)),
                     None => Ok(()),
                 };
                 restored.map_err(|error| {
@@ -322,10 +335,13 @@ mod tests {
             strategy: "emission_decoupling = true\n".to_owned(),
             seed: u64::MAX - 3,
             version: "0.1.0".to_owned(),
+            path_version: 7,
             wall_seconds: 1.5,
             cpu_seconds_setup: 0.25,
             cpu_seconds_render: 2.75,
-            files: vec![Fingerprint::of("/home/änne/torch.vdb", &b"voxels"[..]).unwrap()],
+            files: vec![
+                Fingerprint::of("/home/änne/torch.vdb", &b"voxels"[..], NO_PROGRESS).unwrap(),
+            ],
         }
     }
 

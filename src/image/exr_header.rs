@@ -27,6 +27,9 @@ pub struct SnapshotHeader {
     pub seed: u64,
     /// The version of Flambeau that wrote it.
     pub version: String,
+    /// The version of the paths in it, [`PATH_VERSION`](crate::transport::PATH_VERSION) of the
+    /// Flambeau that wrote it.
+    pub path_version: u64,
     /// Wall-clock seconds spent on the picture, over all its sessions.
     pub wall_seconds: f64,
     /// CPU seconds spent on building the scene.
@@ -47,11 +50,15 @@ const WALL_SECONDS: &str = "wall_seconds";
 /// Setup and rendering together.
 const CPU_SECONDS: &str = "cpu_seconds";
 const CPU_SECONDS_SETUP: &str = "flambeau.cpu_seconds_setup";
+const PATH_VERSION: &str = "flambeau.path_version";
 const FILES: &str = "flambeau.files";
 const PATHS: &str = "flambeau.paths";
 const TRACKING_STEPS: &str = "flambeau.tracking_steps";
 const NON_FINITE: &str = "flambeau.non_finite_samples";
 const GUARD_HITS: &str = "flambeau.guard_hits";
+
+/// The path version of snapshots that do not tell it, which are those of Flambeau 0.1.0.
+const FIRST_PATH_VERSION: u64 = 1;
 
 /// The attributes of a snapshot of `film`.
 ///
@@ -72,6 +79,7 @@ pub fn attributes(film: &Film, header: &SnapshotHeader) -> Result<LayerAttribute
         (WALL_SECONDS, AttributeValue::F64(header.wall_seconds)),
         (CPU_SECONDS, AttributeValue::F64(cpu_seconds)),
         (CPU_SECONDS_SETUP, AttributeValue::F64(header.cpu_seconds_setup)),
+        (PATH_VERSION, count(header.path_version)),
         (FILES, words(&files)),
         (PATHS, count(film.totals.paths)),
         (TRACKING_STEPS, count(film.totals.tracking_steps)),
@@ -116,6 +124,7 @@ impl<'a> Attributes<'a> {
             strategy: self.text(STRATEGY)?,
             seed: self.count(SEED)?,
             version: self.version()?,
+            path_version: self.path_version()?,
             wall_seconds: self.number(WALL_SECONDS)?,
             cpu_seconds_setup,
             cpu_seconds_render: (self.number(CPU_SECONDS)? - cpu_seconds_setup).max(0.0),
@@ -143,6 +152,13 @@ impl<'a> Attributes<'a> {
         let Some(software) = &self.all.software_name else { return Err(self.missing(SOFTWARE)) };
         let software = software.to_string();
         Ok(software.strip_prefix(SOFTWARE_PREFIX).unwrap_or(&software).to_owned())
+    }
+
+    fn path_version(&self) -> Result<u64> {
+        match self.get(PATH_VERSION) {
+            Some(_) => self.count(PATH_VERSION),
+            None => Ok(FIRST_PATH_VERSION),
+        }
     }
 
     fn get(&self, name: &str) -> Option<&AttributeValue> {

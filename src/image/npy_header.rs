@@ -1,8 +1,8 @@
 //! The header of a numpy file: a Python dictionary of three entries ("NPY format", numpy's
 //! documentation, versions 1.0 to 3.0).
 //!
-//! Read here and not by `npyz`, whose parser takes any Python literal and goes as deep into brackets
-//! as a broken file asks for.
+//! Read without a package: those there are take any Python literal and go as deep into brackets as
+//! a broken file asks for. Here nothing nests, and nothing is allocated by what a header claims.
 
 /// What a header says.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -24,6 +24,22 @@ pub const MAGIC: &[u8] = b"\x93NUMPY";
 const DESCR: &str = "descr";
 const FORTRAN_ORDER: &str = "fortran_order";
 const SHAPE: &str = "shape";
+
+/// Bytes of a header that is written, magic and length included: room for any lengths of 32 bits,
+/// and a multiple of 64, so that the values after it are aligned.
+const WRITTEN_BYTES: usize = 128;
+
+/// The header, of version 1.0, of an array of little-endian float32 whose last index runs fastest.
+pub fn float_header(shape: [u32; 3]) -> Vec<u8> {
+    let [height, width, channels] = shape;
+    let entries = format!(
+        "{{'{DESCR}': '<f4', '{FORTRAN_ORDER}': False, '{SHAPE}': ({height}, {width}, {channels}, ), }}"
+    );
+    let mut header = [MAGIC, &[1, 0, WRITTEN_BYTES as u8 - 10, 0], entries.as_bytes()].concat();
+    header.resize(WRITTEN_BYTES - 1, b' ');
+    header.push(b'\n');
+    header
+}
 
 /// Splits a file into its header and its data.
 ///
@@ -139,6 +155,23 @@ mod tests {
         );
         let text = "{'descr': '<f4', 'fortran_order': False, 'shape': ()}";
         assert_eq!(parse(text), Ok(header(&[])));
+    }
+
+    /// The bytes that `numpy.load` has read from the first version on.
+    #[test]
+    fn written_headers_have_their_length_whatever_the_shape() {
+        let header = float_header([540, 960, 3]);
+        let entries = b"{'descr': '<f4', 'fortran_order': False, 'shape': (540, 960, 3, ), }";
+        assert_eq!(&header[..10], b"\x93NUMPY\x01\x00\x76\x00");
+        assert_eq!(&header[10..10 + entries.len()], entries);
+        assert!(header[10 + entries.len()..127].iter().all(|&byte| byte == b' '));
+        for shape in [[540, 960, 3], [1, 1, 1], [u32::MAX; 3]] {
+            let file = [&float_header(shape)[..], &[7]].concat();
+            assert_eq!((file.len(), file[127]), (129, b'\n'));
+            let (header, data) = split(&file).unwrap();
+            assert_eq!((header.descr.as_str(), header.fortran_order), ("<f4", false));
+            assert_eq!((header.shape, data), (shape.map(|n| n as usize).to_vec(), &[7][..]));
+        }
     }
 
     #[test]

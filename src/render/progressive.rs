@@ -229,13 +229,16 @@ impl ProgressiveRender {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+
     use glam::UVec2;
 
     use super::*;
+    use crate::error::{Progress, Result, report};
     use crate::math::Rgb;
     use crate::render::pool::Priority;
     use crate::render::synthetic::Uniform;
-    use crate::transport::PathSample;
+    use crate::transport::{PathSample, SampleNumber};
 
     /// The first picture of a film, with the side of its blocks.
     fn first_picture(film: Film) -> (Picture, u32) {
@@ -250,6 +253,82 @@ mod tests {
         assert!(!picture.complete && picture.variance.is_empty());
         let side = 1 << picture.block_log2;
         (picture, side)
+    }
+
+    /// Has something to find out before all samples but the first, which takes many questions.
+    #[derive(Default)]
+    struct Pilot {
+        questions: AtomicU32,
+        found: AtomicBool,
+    }
+
+    /// Questions until it is found out.
+    const QUESTIONS: u32 = 1000;
+
+    impl PixelSampler for Pilot {
+        fn sample(&self, _: UVec2, number: SampleNumber) -> PathSample {
+            assert!(
+                number.index() == 0 || self.found.load(Ordering::Relaxed),
+                "it was not prepared"
+            );
+            PathSample::default()
+        }
+
+        fn prepare(&self, progress: Progress) -> Result<Prepared> {
+            while self.questions.fetch_add(1, Ordering::Relaxed) < QUESTIONS {
+                report(progress, 0.0)?;
+            }
+            self.found.store(true, Ordering::Relaxed);
+            Ok(Prepared::NOTHING)
+        }
+    }
+
+    /// The first pass waits for nothing, the second for what is found out before it, which is given
+    /// up where the work is.
+    #[test]
+    fn the_second_pass_is_prepared_and_that_can_be_given_up() {
+        let pool = Pool::new(Some(2), Priority::Normal).unwrap();
+        let (pilot, limits) = (Arc::new(Pilot::default()), Limits { spp: 2, seconds: None });
+        let film = Film::new(UVec2::new(40, 20)).unwrap();
+        let mut engine = ProgressiveRender::new(pilot.clone(), film, limits, None);
+        while !engine.is_complete() {
+            assert!(matches!(engine.step(&pool, false, &|| false), RenderStep::Worked));
+        }
+        let questions = || pilot.questions.load(Ordering::Relaxed);
+        assert_eq!(questions(), 0);
+        let stop = || questions() >= 10;
+        assert!(matches!(engine.step(&pool, false, &stop), RenderStep::Interrupted));
+        assert_eq!((questions(), engine.film().sample_range()), (10, (1, 1)));
+        while !engine.is_finished() {
+            assert!(matches!(engine.step(&pool, false, &|| false), RenderStep::Worked));
+        }
+        assert_eq!(engine.film().sample_range(), (2, 2));
+    }
+
+    #[test]
+    fn what_cannot_be_found_out_is_a_failure() {
+        struct Faulty;
+        impl PixelSampler for Faulty {
+            fn sample(&self, _: UVec2, _: SampleNumber) -> PathSample {
+                PathSample::default()
+            }
+            fn prepare(&self, _: Progress) -> Result<Prepared> {
+                panic!("a fault on purpose")
+            }
+        }
+        let pool = Pool::new(Some(1), Priority::Normal).unwrap();
+        let film = Film::new(UVec2::new(8, 8)).unwrap();
+        let limits = Limits { spp: 2, seconds: None };
+        let mut engine = ProgressiveRender::new(Arc::new(Faulty), film, limits, None);
+        let failure = loop {
+            match engine.step(&pool, false, &|| false) {
+                RenderStep::Worked => {}
+                RenderStep::Failed(failure) => break failure,
+                other => panic!("{other:?}"),
+            }
+        };
+        assert!(failure.at.is_none() && failure.message.contains("on purpose"), "{failure}");
+        assert_eq!(engine.film().sample_range(), (1, 1));
     }
 
     #[test]

@@ -71,9 +71,8 @@ pub struct RenderStats {
     pub guard_hits: u64,
     /// Relative standard error of the picture, see [`FilmStats::noise`]; none before two samples.
     pub noise: Option<f64>,
-    /// How often probes are asked, see [`PixelSampler::found_flights`].
-    ///
-    /// [`PixelSampler::found_flights`]: crate::transport::PixelSampler::found_flights
+    /// How often probes are asked, see
+    /// [`Prepared::guided_flights`](crate::transport::Prepared::guided_flights).
     pub guided_flights: Option<f32>,
     /// Whether the limit is reached.
     pub finished: bool,

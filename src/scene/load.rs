@@ -18,8 +18,14 @@ pub struct Opened {
 
 /// Whether the name is that of a scene, a file or an embedded one, and not of a bare volume.
 pub fn is_scene(source: &str) -> bool {
-    embedded::scene(source).is_some()
-        || !source.starts_with(BUILTIN) && files::has_extension(Path::new(source), "toml")
+    embedded::scene(source).is_some() || scene_file(source).is_some()
+}
+
+/// The file on the disk that the scene called `source` is read from; `None` for embedded scenes and
+/// bare volumes.
+pub fn scene_file(source: &str) -> Option<&Path> {
+    let path = Path::new(source);
+    (!source.starts_with(BUILTIN) && files::has_extension(path, "toml")).then_some(path)
 }
 
 /// The settings of a scene file, of a bare volume, or of `builtin:NAME`.

@@ -6,6 +6,7 @@ use super::{Overrides, Settings, parse, to_toml};
 use crate::error::Result;
 use crate::files::Fingerprint;
 use crate::image::exr::SnapshotHeader;
+use crate::transport::PATH_VERSION;
 
 /// Why new samples may not join those of a snapshot.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -45,6 +46,9 @@ pub fn compatibility(
     files: &[Fingerprint],
 ) -> Result<Compatibility> {
     let mut warnings = Vec::new();
+    if let Some(blocker) = other_paths(header) {
+        return Ok(Compatibility { blocker: Some(blocker), warnings });
+    }
     let mut blocker = difference(&settings_of(header, name)?, settings)?.map(|difference| {
         let what =
             format!("the snapshot was rendered with other settings than this scene: {difference}");
@@ -60,13 +64,21 @@ pub fn compatibility(
             )),
         }
     }
-    if header.version != env!("CARGO_PKG_VERSION") {
-        warnings.push(format!(
-            "{name} was begun with version {}; its samples and those of this version may differ",
-            header.version
-        ));
-    }
     Ok(Compatibility { blocker, warnings })
+}
+
+/// The blocker of a snapshot whose samples follow other paths than this version would. The scene in
+/// it may well have keys that are not known here, and need not be understood to say so.
+fn other_paths(header: &SnapshotHeader) -> Option<Blocker> {
+    let what = format!(
+        "the snapshot has path version {}, of Flambeau {}, and this is Flambeau {} with path version \
+         {PATH_VERSION}; the same settings lead to other paths there",
+        header.path_version,
+        header.version,
+        env!("CARGO_PKG_VERSION")
+    );
+    let fix = "Render anew, or go on with the version of Flambeau that wrote it";
+    (header.path_version != PATH_VERSION).then_some(Blocker { what, fix })
 }
 
 /// What has become of a file.

@@ -21,7 +21,7 @@ pub struct Frame {
     pub(super) scene: Arc<Scene>,
     size: UVec2,
     seed: u64,
-    emission_estimator: EmissionEstimator,
+    pub(super) emission_estimator: EmissionEstimator,
     pub(super) probes: Option<Arc<Probes>>,
     pub(super) brightness: Brightness,
 }

@@ -25,5 +25,8 @@ pub mod vertex;
 mod weight_window;
 
 pub use frame::{Frame, PreparedFrame};
-pub use sample::{PathSample, PixelSampler, Prepared, SampleNumber};
+pub use sample::{PATH_VERSION, PathSample, PixelSampler, Prepared, SampleNumber};
 pub use scene::Scene;
+
+#[cfg(test)]
+mod tests;

@@ -8,6 +8,11 @@ use super::tracking::event::{Event, Flight};
 use crate::error::{Progress, Result, report};
 use crate::math::{Rgb, mean};
 
+/// The version of the paths, raised whenever (scene, strategy, seed, pixel, sample) leads to another
+/// path than before. Snapshots carry it: samples of two versions come from two estimators or two
+/// series of random numbers, so that only those of the same version are continued.
+pub const PATH_VERSION: u64 = 1;
+
 /// What one path brought to its pixel: four parts that sum to the beauty, and what else is kept.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PathSample {
@@ -25,7 +30,8 @@ pub struct PathSample {
     pub depth: Option<f32>,
     /// Tentative collisions of all walks of the path, and steps of ray marching.
     pub tracking_steps: u32,
-    /// Whether the path was cut, at [`path::GUARD`] events or [`tracking::MOST_COLLISIONS`].
+    /// Whether the path was cut, at [`path::GUARD`](super::path::GUARD) events or
+    /// [`MOST_COLLISIONS`] collisions.
     pub guard_hit: bool,
 }
 
@@ -132,15 +138,15 @@ impl Contributions {
 }
 
 /// What the pilot pass of a picture has found, on which all samples of a pixel but the first rest.
-/// Only [`PixelSampler::prepare`] makes one.
+/// [`PixelSampler::prepare`] makes it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prepared {
     pub(super) guided_flights: Option<f32>,
 }
 
 impl Prepared {
-    /// Nothing was to be found.
-    pub(super) const NOTHING: Self = Self { guided_flights: None };
+    /// For samplers whose later samples rest on nothing.
+    pub const NOTHING: Self = Self { guided_flights: None };
 
     /// Guided flights of a camera ray, relative to those that the probes propose; 0 where none pay.
     /// `None` where no pilot decides it.

@@ -123,7 +123,7 @@ fn layers_take_the_place_of_the_picture() {
         }
     }
     window.click(Role::ComboBox, "Layer");
-    window.click(Role::Button, "Picture");
+    window.click(Role::Button, "Beauty");
     let pixels = window.app().engine().picture().unwrap().pixels.clone();
     assert_shown(&mut window, &pixels, Tone::default());
 }

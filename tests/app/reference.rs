@@ -188,8 +188,7 @@ fn errors_against_a_file_are_those_of_the_metrics() {
     );
 
     // One picture has two views: itself and its error.
-    for (kind, title) in [("Squared error", "Squared error, relative"), ("FLIP map", "FLIP error")]
-    {
+    for (kind, title) in [("Squared error", "Relative squared error"), ("FLIP map", "FLIP error")] {
         if kind == "Squared error" {
             window.press(Modifiers::NONE, Key::V);
         }

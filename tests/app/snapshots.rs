@@ -7,7 +7,7 @@ use flambeau::image::exr::{self, SnapshotHeader, read_snapshot};
 use flambeau::render::schedule::Limits;
 use flambeau::render::{Film, RenderJob, render_headless};
 use flambeau::scene::{Settings, VolumeCache};
-use flambeau::transport::Frame;
+use flambeau::transport::{Frame, PATH_VERSION};
 use glam::UVec2;
 
 use super::*;
@@ -90,8 +90,9 @@ fn write_snapshot(path: &Path, settings: &Settings, spp: u32) {
         strategy: toml::to_string(&settings.strategy).unwrap(),
         seed: settings.film.seed,
         version: env!("CARGO_PKG_VERSION").to_owned(),
+        path_version: PATH_VERSION,
         wall_seconds: 1000.0,
-        files: scene::fingerprints(settings).unwrap(),
+        files: scene::fingerprints(settings, NO_PROGRESS).unwrap(),
         ..SnapshotHeader::default()
     };
     exr::write(path, &headless(settings, spp), &header).unwrap();

@@ -27,6 +27,7 @@ impl Window {
 }
 
 #[test]
+#[allow(clippy::too_many_lines, reason = "one story, told in order")]
 fn a_morning_with_the_window() {
     let folder = tempfile::tempdir().unwrap();
     let Some(mut window) = Window::begin(folder, None, ([720.0, 420.0], 1.0)) else { return };

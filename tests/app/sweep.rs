@@ -53,10 +53,7 @@ fn a_key_tries_all_strategies_and_a_button_uses_the_best() {
     window.until_quick();
     assert!(window.has("Cancelled before all strategies had their time."));
     window.click(Role::Button, "Sweep again");
-    assert!(
-        window.has("Sweep: trying strategies") && is_held(window.app()),
-        "the live render waits"
-    );
+    assert!(window.has("Sweep: ") && is_held(window.app()), "the live render waits");
     window.until_swept();
     assert!(!is_held(window.app()) && !window.has("Cancelled before"));
 

@@ -135,7 +135,8 @@ fn stops_of_a_ramp_are_added_moved_and_deleted_by_hand_and_by_keys() {
 fn a_volume_is_placed_and_a_shape_measured() {
     let Some(mut window) = Window::open(BALL) else { return };
     window.click(Role::DisclosureTriangle, "Placement");
-    for (name, value) in [("Move x", 2.0), ("Rotate z", 30.0), ("Scale", 0.5), ("Radius", 1.5)] {
+    for (name, value) in [("Translate x", 2.0), ("Rotate z", 30.0), ("Scale", 0.5), ("Radius", 1.5)]
+    {
         let field = window.harness.get_by_role_and_label(Role::SpinButton, name);
         field.set_value_accesskit(value);
         window.harness.step();

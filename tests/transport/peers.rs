@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::common::{self, Z_LIMIT, build, half_of_strategies, name, seed, shared, with_strategy};
 use flambeau::{
+    image::npy,
     render::{
         Film,
         estimate::{PixelEstimate, gray},
@@ -54,10 +55,11 @@ fn mean_and_variance<'a>(pixels: impl Iterator<Item = &'a Pixel>) -> (f64, f64) 
 fn fire_absorb_matches_its_exact_picture() {
     let Some(file) = shared("peers/flame.vdb") else { return };
     let Some(exact) = shared("peers/fire_absorb_exact.npy") else { return };
-    let exact = npyz::NpyFile::new(std::fs::File::open(exact).unwrap()).unwrap();
-    let exact: Vec<f32> = exact.into_vec().unwrap();
-    let exact: Vec<f64> =
-        exact.chunks(3).map(|c| c.iter().map(|&v| f64::from(v)).sum::<f64>() / 3.0).collect();
+    let (_, exact) = npy::read(&exact).unwrap();
+    let exact: Vec<f64> = exact
+        .iter()
+        .map(|&[r, g, b, _]| [r, g, b].map(f64::from).iter().sum::<f64>() / 3.0)
+        .collect();
     let scene = build(&format!(
         r#"
         [camera]

@@ -3,10 +3,11 @@
 use std::path::Path;
 use std::sync::mpsc;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, NO_PROGRESS, Result};
 use crate::image::exr::SnapshotHeader;
 use crate::render::Film;
 use crate::scene::{self, Settings};
+use crate::transport::PATH_VERSION;
 
 /// The film, once the session has copied it; `path` is what it is wanted for.
 pub fn receive(path: &Path, film: &mpsc::Receiver<Film>) -> Result<Film> {
@@ -25,9 +26,10 @@ pub fn header(settings: &Settings, [seconds, cpu_seconds]: [f64; 2]) -> Result<S
         strategy,
         seed: settings.film.seed,
         version: env!("CARGO_PKG_VERSION").to_owned(),
+        path_version: PATH_VERSION,
         wall_seconds: seconds,
         cpu_seconds_render: cpu_seconds,
-        files: scene::fingerprints(settings)?,
+        files: scene::fingerprints(settings, NO_PROGRESS)?,
         ..SnapshotHeader::default()
     })
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::app::ui::notices::{Level, Notice};
 use crate::app::ui::widgets::significant;
-use crate::error::{Error, Result};
+use crate::error::{Error, NO_PROGRESS, Result};
 use crate::image::exr::{Snapshot, SnapshotHeader, read_info, read_snapshot};
 use crate::render::estimate::samples_per_pixel;
 use crate::render::{Film, Resume};
@@ -66,7 +66,7 @@ fn samples(
     header: &SnapshotHeader,
     settings: &Settings,
 ) -> Result<(Film, Vec<String>), String> {
-    let files = scene::fingerprints(settings).map_err(|error| error.to_string())?;
+    let files = scene::fingerprints(settings, NO_PROGRESS).map_err(|error| error.to_string())?;
     let compatibility = scene::compatibility(header, name, settings, &files);
     let compatibility = compatibility.map_err(|error| error.to_string())?;
     if let Some(blocker) = compatibility.blocker {
@@ -92,6 +92,7 @@ fn lift_limit(settings: &mut Settings, film: &Film) -> bool {
 mod tests {
     use super::*;
     use crate::image::exr;
+    use crate::transport::PATH_VERSION;
     use glam::UVec2;
 
     /// A snapshot of nothing much, with a volume file beside it.
@@ -109,8 +110,9 @@ mod tests {
         let header = SnapshotHeader {
             scene: scene::to_toml(&settings, None).unwrap(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
+            path_version: PATH_VERSION,
             wall_seconds: 7.0,
-            files: scene::fingerprints(&settings).unwrap(),
+            files: scene::fingerprints(&settings, NO_PROGRESS).unwrap(),
             ..SnapshotHeader::default()
         };
         let mut film = Film::new(UVec2::new(3, 2)).unwrap();
@@ -138,6 +140,21 @@ mod tests {
         let Notice { level, text } = reopened.notice;
         assert_eq!(level, Level::Failed);
         assert!(text.contains("fire.vdb had 6 bytes and now has 12"), "{text}");
+    }
+
+    #[test]
+    fn samples_of_other_paths_are_shown_as_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = write(folder.path(), 9);
+        let Snapshot { film, mut header } = read_snapshot(Path::new(&path)).unwrap();
+        header.path_version = PATH_VERSION + 1;
+        exr::write(Path::new(&path), &film, &header).unwrap();
+        let (settings, reopened) = open(&path).unwrap();
+        assert!(reopened.resume.is_none() && settings.film.size == [3, 2]);
+        let Notice { level, text } = reopened.notice;
+        assert_eq!(level, Level::Failed);
+        let theirs = format!("the snapshot has path version {}", PATH_VERSION + 1);
+        assert!(text.contains("from the start") && text.contains(&theirs), "{text}");
     }
 
     #[test]

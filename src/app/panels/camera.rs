@@ -73,6 +73,7 @@ fn focal_length_field(ui: &mut Ui, fov: &mut f32) {
         .max_decimals(1)
         .suffix(" mm")
         .custom_parser(finite);
+    ui.spacing_mut().button_padding.x = 2.0;
     let field = ui.add_sized([FOCAL_LENGTH, space::ROW_HEIGHT], field);
     let help = "The focal length for a sensor 36 mm wide (full frame).";
     if field.accessible_name("Focal length").on_hover_text(help).changed() {

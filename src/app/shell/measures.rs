@@ -81,10 +81,47 @@ impl App {
         self.take_reference(ctx, origin);
     }
 
+    /// Compares two strategies, or ends a comparison, be it of strategies or with a snapshot.
+    pub(super) fn compare_or_end(&mut self) {
+        if self.compare.versus.is_some() {
+            self.snapshots.strip.show(None);
+            return;
+        }
+        let document = &mut self.editor.document;
+        match document.compared {
+            None => document.compare(),
+            Some(_) => document.compared = None,
+        }
+        self.editor.name_edit("comparison");
+    }
+
+    /// Edits the other side from now on.
+    pub(super) fn switch_side(&mut self) {
+        self.editor.document.switch_side();
+        self.editor.name_edit("edited side");
+    }
+
+    /// Exchanges A and B.
+    pub(super) fn swap_sides(&mut self) {
+        if let Some(side) = self.compare.versus {
+            self.compare.versus = Some(side.other());
+            return;
+        }
+        self.editor.document.swap_sides();
+        self.editor.name_edit("swap of A and B");
+    }
+
+    /// Gives the other side the strategy of the edited one.
+    pub(super) fn copy_side(&mut self) {
+        self.editor.document.copy_to_other_side();
+        self.editor.name_edit("copy to the other side");
+    }
+
     /// Switches to the next view that there is.
     pub(super) fn next_layout(&mut self) {
-        self.compare.second_side.layout =
-            self.compare.second_side.layout.next(&self.compare.layouts());
+        let layouts = self.compare.layouts();
+        let second_side = &mut self.compare.second_side;
+        second_side.layout = second_side.layout.next(&layouts);
     }
 
     /// Gives the region all samples, or all pixels again. Without a region the next drag draws one.

@@ -99,7 +99,7 @@ impl StartRow {
         }
         ScrollArea::horizontal().auto_shrink([true, false]).show(ui, |ui| {
             ui.horizontal_top(|ui| {
-                ui.spacing_mut().item_spacing.x = 7.0;
+                ui.spacing_mut().item_spacing.x = 4.0;
                 // Room for the outline.
                 ui.add_space(2.0);
                 for (&(name, words, _), picture) in CARDS.iter().zip(&self.pictures) {
@@ -125,7 +125,7 @@ fn head(ui: &mut Ui, again: &mut bool, choice: &mut Option<StartChoice>) {
                 .on_hover_text("Show this row whenever Flambeau starts without a file.");
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 let text = "Drag the picture to orbit, drop a .vdb to open it. 1 to 5 switch \
-                            strategies, C compares two, F1 shows the keys.";
+                            strategies, C compares, F1 lists keys.";
                 ui.add(Label::new(RichText::new(text).color(color::TEXT_DIM)).truncate());
             });
         });

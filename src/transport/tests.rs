@@ -1,0 +1,125 @@
+//! All that is done before the first sample can be given up, anywhere, and changes nothing otherwise.
+
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use glam::UVec2;
+
+use super::*;
+use crate::error::{Error, NO_PROGRESS, Progress, Result};
+use crate::scene::{self, Overrides, VolumeCache};
+
+const SIZE: UVec2 = UVec2::new(16, 12);
+
+/// Asks for everything: probes with scores of several lights, caustics, learning, the optimal
+/// majorant and a pilot, in a volume with cells that glows.
+const SCENE: &str = r#"
+    [camera]
+    position = [0, -4, 0]
+    target = [0, 0, 0]
+    [strategy.advanced]
+    boost_mode = "optimal"
+    light_selection = "probes"
+    probe_count = 64
+    [[volume]]
+    shape = "noise"
+    half_size = 1.0
+    frequency = 2.0
+    density = { scale = 1.0 }
+    albedo = 0.8
+    emission = { mode = "source", le = [2.0, 1.0, 0.2] }
+    [[light]]
+    type = "sphere"
+    center = [2.0, -1.0, 2.0]
+    radius = 0.3
+    intensity = 20.0
+    [[light]]
+    type = "point"
+    position = [-2.0, -1.0, 2.0]
+    intensity = 20.0
+    [[surface]]
+    shape = "sphere"
+    center = [1.5, 0.0, 0.0]
+    radius = 0.4
+    material = { type = "conductor", alpha = 0.1, reflectance = 0.9 }
+"#;
+
+/// Runs `work` on one thread and says stop at the question of that number; how it ended, and the
+/// number of questions.
+fn questions<R: Send>(
+    stop_at: u64,
+    work: impl Fn(Progress) -> Result<R> + Send + Sync,
+) -> (Result<R>, u64) {
+    let asked = AtomicU64::new(0);
+    let progress = |fraction: f32| {
+        assert!((0.0..=1.0).contains(&fraction), "{fraction} of the work");
+        asked.fetch_add(1, Ordering::Relaxed) + 1 < stop_at
+    };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let result = pool.install(|| work(&progress));
+    (result, asked.load(Ordering::Relaxed))
+}
+
+/// Gives `work` up at many of its questions; none but `late` of them may follow.
+fn check_giving_up<R: Send>(
+    what: &str,
+    least: u64,
+    late: u64,
+    work: impl Fn(Progress) -> Result<R> + Send + Sync,
+) {
+    let (done, all) = questions(u64::MAX, &work);
+    assert!(done.is_ok() && all >= least, "{what}: {all} questions where {least} are due");
+    for stop_at in (1..=all).step_by((all / 12).max(1) as usize) {
+        let (ended, asked) = questions(stop_at, &work);
+        assert!(matches!(ended, Err(Error::Cancelled)), "{what}: given up at {stop_at} of {all}");
+        assert!(asked <= stop_at + late, "{what}: {asked} questions, the answer came at {stop_at}");
+    }
+}
+
+/// Every probe asks, and so does every path that one learns from, every ray from a metal, every pixel
+/// that is measured.
+#[test]
+fn setting_up_a_frame_can_be_given_up_anywhere() {
+    let scene = Arc::new(Scene::of_text(SCENE));
+    let probes = prepare::probes(&scene, NO_PROGRESS).unwrap().unwrap();
+    let leaves = probes.leaves().len() as u64;
+    check_giving_up("probes", probes.len() as u64 + 8 * leaves + 256 + 16384, 0, |progress| {
+        prepare::probes(&scene, progress)
+    });
+    let probes = Some(Arc::new(probes));
+    check_giving_up("film", 24 * 24 + 32, 0, |progress| {
+        Frame::try_with_probes(scene.clone(), SIZE, 0, probes.clone(), progress)
+    });
+    // Four pilots fly at once, and each of the others may ask once more.
+    check_giving_up("pilot", 1000, 3, |progress| {
+        Frame::with_probes(scene.clone(), SIZE, 0, probes.clone()).prepare(progress)
+    });
+}
+
+#[test]
+fn building_volumes_can_be_given_up_anywhere() {
+    let settings = scene::parse(SCENE, "test", Path::new("."), &Overrides::default()).unwrap();
+    check_giving_up("volumes", 3 * 16 * 16 * 16, 0, |progress| {
+        scene::assemble(&settings, &VolumeCache::default(), progress)
+    });
+}
+
+/// Whoever could have given it up and did not gets the same paths.
+#[test]
+fn what_was_not_given_up_is_the_same() {
+    let scene = Arc::new(Scene::of_text(SCENE));
+    let frame = |progress| Frame::new(scene.clone(), SIZE, 0, progress).unwrap();
+    let (plain, asked) = (frame(NO_PROGRESS), frame(&|_| true));
+    assert_eq!(format!("{:?}", asked.probes), format!("{:?}", plain.probes));
+    assert_eq!(
+        (asked.emission_estimator, asked.brightness),
+        (plain.emission_estimator, plain.brightness)
+    );
+    let plain = plain.prepared(NO_PROGRESS).unwrap();
+    let asked = asked.prepared(&|_| true).unwrap();
+    assert_eq!(asked.guided_flights(), plain.guided_flights());
+    assert!(asked.prepare(&|_| false).is_ok(), "what is found is not looked for again");
+    let paths = |frame: &PreparedFrame| [0, 1, 2].map(|s| frame.sample(UVec2::new(8, 6), s));
+    assert_eq!(paths(&asked), paths(&plain));
+}
