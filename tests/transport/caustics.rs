@@ -1,7 +1,7 @@
 //! Light that metals throw into the medium, found by directions towards its images.
 
 use crate::common::{
-    POWER, Verdicts, asking, build, full_name, measure_closely, measure_enough, measure_to,
+    CLOSELY, Expected, REFERENCED, Verdicts, asking, build, full_name, measure_closely, measure_to,
     measure_with, with_strategy,
 };
 use flambeau::transport::{
@@ -144,8 +144,8 @@ fn light_off_a_mirror_is_that_of_its_image() {
     let scattered = |path: &PathSample| path.direct + path.indirect;
     let image = with_strategy(&build(&format!("{MIST}{IMAGE}")), with(|_| ()));
     let mirror = build(&format!("{MIST}{MIRROR}"));
-    let expected = measure_with(&image, 400_000, scattered);
-    let mut verdicts = Verdicts::default();
+    let expected = Expected::measured(&measure_to(&image, 600_000, CLOSELY, scattered));
+    let mut verdicts = Verdicts::of_power(REFERENCED);
     for strategy in [
         with(|_| ()),
         with(|a| a.share_learning = true),
@@ -154,12 +154,8 @@ fn light_off_a_mirror_is_that_of_its_image() {
         with(|a| (a.guide_directions, a.guide_all_vertices) = (false, true)),
     ] {
         let label = full_name(&strategy);
-        let found = measure_to(&with_strategy(&mirror, strategy), 3_000_000, POWER, scattered);
-        for channel in 0..3 {
-            verdicts.check_equal(&label, &found, &expected, channel);
-            let error = found.error(channel).max(expected.error(channel));
-            assert!(error < POWER * expected.mean[channel], "{label}: too weak {found:?}");
-        }
+        let scene = with_strategy(&mirror, strategy);
+        verdicts.hold_part(&label, &scene, 3_000_000, &expected, scattered);
     }
     verdicts.finish();
 }
@@ -169,20 +165,15 @@ fn light_off_a_mirror_is_that_of_its_image() {
 fn guides_to_metals_change_nothing() {
     let scene = build(METALS);
     let by_chance = with_strategy(&scene, with(|a| a.guide_caustics = false));
-    let expected = measure_closely(&by_chance, 4_000_000);
-    let mut verdicts = Verdicts::default();
+    let expected = Expected::measured(&measure_closely(&by_chance, 4_000_000));
+    let mut verdicts = Verdicts::of_power(REFERENCED);
     for strategy in [
         with(|_| ()),
         with(|a| a.guide_directions = false),
         with(|a| a.scatter_probability = ScatterProbability::Even),
     ] {
         let label = full_name(&strategy);
-        let found = measure_enough(&with_strategy(&scene, strategy), 2_000_000);
-        for channel in 0..3 {
-            verdicts.check_equal(&label, &found, &expected, channel);
-            let error = found.error(channel).max(expected.error(channel));
-            assert!(error < POWER * expected.mean[channel], "{label}: too weak {found:?}");
-        }
+        verdicts.hold(&label, &with_strategy(&scene, strategy), 2_000_000, &expected);
     }
     verdicts.finish();
 }

@@ -7,7 +7,7 @@
 use std::f64::consts::{PI, TAU};
 
 use crate::common::{
-    Verdicts, build, every_nth, every_setting, full_name, measure_enough, measure_to, with_strategy,
+    Expected, Verdicts, build, every_nth, every_setting, full_name, with_strategy,
 };
 use flambeau::transport::{
     Scene,
@@ -48,15 +48,10 @@ fn check_direct(
     expected: [f64; 3],
 ) {
     for setting in settings {
-        let paths = if setting.nee { paths } else { 3 * paths };
-        let estimate =
-            measure_to(&with_strategy(scene, *setting), 2 * paths, verdicts.power(), |sample| {
-                sample.direct
-            });
-        for (channel, expected) in expected.into_iter().enumerate() {
-            let label = format!("{label}, {}", full_name(setting));
-            verdicts.check_channel(&label, &estimate, channel, expected);
-        }
+        let paths = if setting.nee { 2 * paths } else { 6 * paths };
+        let label = format!("{label}, {}", full_name(setting));
+        let (scene, expected) = (with_strategy(scene, *setting), Expected::known(&expected));
+        verdicts.hold_part(&label, &scene, paths, &expected, |sample| sample.direct);
     }
 }
 
@@ -393,9 +388,9 @@ fn a_round_room_lit_by_a_fire() {
         let scene = room(turns);
         for setting in looks() {
             let paths = if setting.nee { 150_000 } else { 300_000 };
-            let estimate = measure_enough(&with_strategy(&scene, setting), 2 * paths);
             let label = format!("{turns} turns, {}", full_name(&setting));
-            verdicts.check(&label, &estimate, expected * unit);
+            let expected = Expected::known(&[expected * unit]);
+            verdicts.hold(&label, &with_strategy(&scene, setting), 2 * paths, &expected);
         }
     }
     verdicts.finish();

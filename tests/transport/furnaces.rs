@@ -2,8 +2,8 @@
 //! where renderers have been seen to go wrong.
 
 use crate::common::{
-    Verdicts, build, every_guide, every_line_setting, every_nth, full_name, half_of_strategies,
-    measure_enough, name, with_strategy,
+    Expected, Verdicts, build, every_guide, every_line_setting, every_nth, full_name,
+    half_of_strategies, name, with_strategy,
 };
 
 use flambeau::transport::strategy::{NeeEvaluation, Strategy};
@@ -46,10 +46,8 @@ fn check_everywhere(text: &str, paths: u32, expected: f64) {
     let scene = build(text);
     let mut verdicts = Verdicts::default();
     for strategy in half_of_strategies() {
-        let estimate = measure_enough(&with_strategy(&scene, strategy), 8 * paths);
-        for channel in 0..3 {
-            verdicts.check_channel(&name(&strategy), &estimate, channel, expected);
-        }
+        let (scene, expected) = (with_strategy(&scene, strategy), Expected::known(&[expected; 3]));
+        verdicts.hold(&name(&strategy), &scene, 8 * paths, &expected);
     }
     verdicts.finish();
 }
@@ -114,10 +112,8 @@ fn nothing_is_lost_by_any_guide() {
     let scene = build(&format!("{CAMERA}{environment}{volumes}"));
     let mut verdicts = Verdicts::default();
     for strategy in every_guide() {
-        let estimate = measure_enough(&with_strategy(&scene, strategy), 200_000);
-        for channel in 0..3 {
-            verdicts.check_channel(&full_name(&strategy), &estimate, channel, 1.0);
-        }
+        let (scene, expected) = (with_strategy(&scene, strategy), Expected::known(&[1.0; 3]));
+        verdicts.hold(&full_name(&strategy), &scene, 200_000, &expected);
     }
     verdicts.finish();
 }
@@ -170,10 +166,8 @@ fn a_fire_in_a_world_full_of_glowing_fog() {
     // Of the settings every third, which has each toggle with each row of finer keys.
     let looking = every_line_setting().into_iter().filter(|setting| setting.nee);
     for setting in every_nth(3, looking).into_iter().chain([point]) {
-        let estimate = measure_enough(&with_strategy(&scene, setting), 800_000);
-        for channel in 0..3 {
-            verdicts.check_channel(&full_name(&setting), &estimate, channel, 3.0);
-        }
+        let (scene, expected) = (with_strategy(&scene, setting), Expected::known(&[3.0; 3]));
+        verdicts.hold(&full_name(&setting), &scene, 800_000, &expected);
     }
     verdicts.finish();
 }
@@ -204,8 +198,8 @@ fn an_emissive_box_inside_an_absorber() {
     let scene = build(text);
     let mut verdicts = Verdicts::default();
     for strategy in half_of_strategies() {
-        let estimate = measure_enough(&with_strategy(&scene, strategy), 1_500_000);
-        verdicts.check(&name(&strategy), &estimate, expected);
+        let (scene, expected) = (with_strategy(&scene, strategy), Expected::known(&[expected]));
+        verdicts.hold(&name(&strategy), &scene, 1_500_000, &expected);
     }
     verdicts.finish();
 }
@@ -242,8 +236,8 @@ fn light_samples_leave_the_medium() {
     let scene = build(text);
     let mut verdicts = Verdicts::default();
     for strategy in half_of_strategies() {
-        let estimate = measure_enough(&with_strategy(&scene, strategy), 200_000);
-        verdicts.check(&name(&strategy), &estimate, expected);
+        let (scene, expected) = (with_strategy(&scene, strategy), Expected::known(&[expected]));
+        verdicts.hold(&name(&strategy), &scene, 200_000, &expected);
     }
     verdicts.finish();
 }
@@ -282,10 +276,8 @@ fn fog_that_is_clear_to_a_channel() {
     let scene = build(&text);
     let mut verdicts = Verdicts::default();
     for strategy in half_of_strategies() {
-        let estimate = measure_enough(&with_strategy(&scene, strategy), 400_000);
-        for (channel, expected) in [2.0, 2.0, 1.0].into_iter().enumerate() {
-            verdicts.check_channel(&name(&strategy), &estimate, channel, expected);
-        }
+        let expected = Expected::known(&[2.0, 2.0, 1.0]);
+        verdicts.hold(&name(&strategy), &with_strategy(&scene, strategy), 400_000, &expected);
     }
     verdicts.finish();
 }

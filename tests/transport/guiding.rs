@@ -1,8 +1,8 @@
 //! Scattering guided by probes, by equal angles and towards glow: whatever the guide, one picture.
 
 use crate::common::{
-    self, Verdicts, asking, build, every_guide, few_guides, full_name, half_of_strategies, measure,
-    measure_closely, measure_enough, measure_one_after_another, measure_with, with_strategy,
+    self, Expected, REFERENCED, Verdicts, asking, build, every_guide, few_guides, full_name,
+    half_of_strategies, measure_closely, measure_with, with_strategy,
 };
 use flambeau::transport::{
     Scene,
@@ -57,19 +57,19 @@ const FLOOR: &str = r#"
     material = { type = "diffuse", reflectance = 0.5 }
 "#;
 
-fn guides_agree(text: &str, settings: Vec<Strategy>, paths: u32) {
+/// Without guides, with all of them and with those of `settings`; the first of these, by `guided`
+/// whichever it is, is what the others are held against.
+fn guides_agree(text: &str, guided: bool, settings: Vec<Strategy>, paths: u32) {
     let scene = build(text);
-    let unguided = Strategy { probe_mis: false, ..Preset::Full.strategy() };
-    let reference = measure_closely(&with_strategy(&scene, unguided), 4 * paths);
-    let mut verdicts = Verdicts::default();
-    for strategy in settings {
-        let estimate = measure_enough(&with_strategy(&scene, strategy), paths);
-        let label = full_name(&strategy);
-        for channel in 0..3 {
-            verdicts.check_equal(&label, &estimate, &reference, channel);
-            let weak = estimate.error(channel) > common::POWER * estimate.mean[channel];
-            assert!(!weak, "{label}: too weak {estimate:?}");
-        }
+    let full = Strategy { advanced: asking(), ..Preset::Full.strategy() };
+    let unguided = Strategy { probe_mis: false, ..full };
+    let (first, second) = if guided { (full, unguided) } else { (unguided, full) };
+    let reference = measure_closely(&with_strategy(&scene, first), 4 * paths);
+    let expected = Expected::measured(&reference);
+    let mut verdicts = Verdicts::of_power(REFERENCED);
+    for strategy in std::iter::once(second).chain(settings) {
+        let scene = with_strategy(&scene, strategy);
+        verdicts.hold(&full_name(&strategy), &scene, 2 * paths, &expected);
     }
     verdicts.finish();
 }
@@ -82,7 +82,7 @@ fn guides_agree_in_thin_smoke() {
         let probes = a.distance == Distance::Probes;
         probes ^ a.equiangular ^ a.guide_directions ^ a.guide_all_vertices
     });
-    guides_agree(&EMBEDDED.replace("SCALE", "0.4"), settings.collect(), 400_000);
+    guides_agree(&EMBEDDED.replace("SCALE", "0.4"), false, settings.collect(), 400_000);
 }
 
 /// Probes alone have rare bright samples in thick smoke, which is what MIS is there for.
@@ -90,14 +90,14 @@ fn guides_agree_in_thin_smoke() {
 fn guides_agree_in_thick_smoke() {
     let shared = |strategy: &Strategy| strategy.advanced.distance == Distance::Mis;
     let settings = every_guide().into_iter().filter(shared).step_by(3).collect();
-    guides_agree(&EMBEDDED.replace("SCALE", "5.0"), settings, 500_000);
+    guides_agree(&EMBEDDED.replace("SCALE", "5.0"), true, settings, 500_000);
 }
 
 /// With an end worth getting to and a fog that never ends.
 #[test]
 fn guides_agree_over_a_floor_in_haze() {
     let text = EMBEDDED.replace("SCALE", "1.5") + HAZE + FLOOR;
-    guides_agree(&text, few_guides(), 400_000);
+    guides_agree(&text, true, few_guides(), 400_000);
 }
 
 /// With the toggles for emission, whose walks share the medium with the guided ones; not without
@@ -106,7 +106,7 @@ fn guides_agree_over_a_floor_in_haze() {
 fn guides_agree_whatever_else_is_on() {
     let found = |s: &Strategy| s.probe_mis && s.nee && s.emission_ratio_tracking;
     let text = EMBEDDED.replace("SCALE", "1.5") + HAZE;
-    guides_agree(&text, half_of_strategies().into_iter().filter(found).collect(), 2_000_000);
+    guides_agree(&text, true, half_of_strategies().into_iter().filter(found).collect(), 2_000_000);
 }
 
 /// Of a ray's first scattering event alone: probes without chance are as good as chance wherever
@@ -144,20 +144,16 @@ fn probes_placed_anew_change_nothing() {
         let advanced = Advanced { probe_learning: false, ..asking() };
         with_strategy(&scene, Strategy { advanced, ..Preset::Full.strategy() })
     };
-    let reference = measure(&by(Distance::Null, 64), 800_000);
-    let mut verdicts = Verdicts::default();
+    let reference = measure_closely(&by(Distance::Null, 64), 2_000_000);
+    let expected = Expected::measured(&reference);
+    let mut verdicts = Verdicts::of_power(REFERENCED);
     for (label, scenes) in [
         ("few, then many", [by(Distance::Mis, 200), by(Distance::Mis, 6000)]),
         ("none, then some", [by(Distance::Null, 64), by(Distance::Mis, 1000)]),
         ("many, then few alone", [by(Distance::Mis, 3000), by(Distance::Probes, 300)]),
         ("unlearned, then learned", [unlearned(), by(Distance::Mis, 1000)]),
     ] {
-        let estimate = measure_one_after_another(&scenes, 400_000);
-        for channel in 0..3 {
-            verdicts.check_equal(label, &estimate, &reference, channel);
-            let weak = estimate.error(channel) > common::POWER * estimate.mean[channel];
-            assert!(!weak, "{label}: too weak {estimate:?}");
-        }
+        verdicts.hold_in_turn(label, &scenes, 800_000, &expected);
     }
     verdicts.finish();
 }
@@ -204,7 +200,7 @@ fn guides_agree_on_shafts_of_light() {
         half_v = [0, 2, 0]
         material = { type = "black" }
     "#;
-    guides_agree(text, few_guides(), 400_000);
+    guides_agree(text, true, few_guides(), 400_000);
 }
 
 fn probes(text: &str, count: u32) -> (Scene, Option<Probes>) {

@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 
 use crate::common::{
-    self, Verdicts, build, every_line_setting, every_nth, full_name, measure_enough, measure_to,
-    measure_with, name, seed, with_strategy,
+    CLOSELY, Expected, REFERENCED, Verdicts, build, every_line_setting, every_nth, full_name,
+    measure_to, name, seed, with_strategy,
 };
 use flambeau::{
     math::{PathRng, Ray},
@@ -73,10 +73,8 @@ fn the_furnace_seen_from_inside() {
     let mut verdicts = Verdicts::default();
     let looking = every_line_setting().into_iter().filter(|setting| setting.nee);
     for setting in every_nth(3, looking) {
-        let estimate = measure_enough(&with_strategy(&scene, setting), 200_000);
-        for channel in 0..3 {
-            verdicts.check_channel(&full_name(&setting), &estimate, channel, 2.0);
-        }
+        let (scene, expected) = (with_strategy(&scene, setting), Expected::known(&[2.0; 3]));
+        verdicts.hold(&full_name(&setting), &scene, 200_000, &expected);
     }
     verdicts.finish();
 }
@@ -104,23 +102,20 @@ fn fire_lights_itself() {
         half_size = 2.0
         material = { type = "diffuse", reflectance = 0.5 }
     "#;
-    let mut verdicts = Verdicts::default();
+    let mut verdicts = Verdicts::of_power(REFERENCED);
     for turns in [1, 2, 0] {
         let floor = format!("{floor}\n[path]\nmax_scatters = {turns}\n");
         let scene = build(&in_the_fire(1.5, &floor));
         let lit = |sample: &PathSample| sample.direct + sample.indirect;
         let blind = Strategy { nee: false, ..Preset::Full.strategy() };
-        let reference = measure_with(&with_strategy(&scene, blind), 300_000, lit);
+        let reference = measure_to(&with_strategy(&scene, blind), 600_000, CLOSELY, lit);
+        let expected = Expected::measured(&reference);
         for setting in one_of_each_walk() {
             let own_walk = setting.emission_ratio_tracking;
             let paths = if own_walk { 400_000 } else { 1_000_000 };
-            let estimate = measure_to(&with_strategy(&scene, setting), paths, common::POWER, lit);
             let label = format!("{turns} turns, {}", full_name(&setting));
-            for channel in 0..3 {
-                verdicts.check_equal(&label, &estimate, &reference, channel);
-                let weak = estimate.error(channel) > common::POWER * estimate.mean[channel];
-                assert!(!weak, "{label}: too weak {estimate:?}");
-            }
+            let scene = with_strategy(&scene, setting);
+            verdicts.hold_part(&label, &scene, paths, &expected, lit);
         }
     }
     verdicts.finish();

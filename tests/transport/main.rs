@@ -19,4 +19,5 @@ mod peers;
 mod profile;
 mod settings;
 mod slabs;
+mod techniques;
 mod walks;

@@ -1,7 +1,7 @@
 //! Scenes with several fires and other lights, files placed freely and shared: looks at the fire
 //! or none, and whichever way the light is chosen, one picture.
 
-use crate::common::{self, Verdicts, build, measure_to, with_strategy};
+use crate::common::{CLOSELY, Expected, REFERENCED, Verdicts, build, measure_to, with_strategy};
 use flambeau::transport::{
     PathSample, Scene,
     strategy::{Advanced, BoostMode, LightSelection, NeeEvaluation, Strategy},
@@ -41,18 +41,11 @@ fn lit(sample: &PathSample) -> flambeau::math::Rgb {
 
 /// Holds the light of `looks` against that without any.
 fn agree(scene: &Scene, looks: &[(String, Strategy)], [looked, unlooked]: [u32; 2]) {
-    let reference = measure_to(&with_strategy(scene, blind()), 2 * unlooked, common::POWER, lit);
-    let mut verdicts = Verdicts::default();
+    let reference = measure_to(&with_strategy(scene, blind()), 6 * unlooked, CLOSELY, lit);
+    let expected = Expected::measured(&reference);
+    let mut verdicts = Verdicts::of_power(REFERENCED);
     for (name, look) in looks {
-        let estimate = measure_to(&with_strategy(scene, *look), 2 * looked, common::POWER, lit);
-        for channel in 0..3 {
-            verdicts.check_equal(name, &estimate, &reference, channel);
-            let weak = |estimate: &common::Estimate| {
-                estimate.error(channel) > common::POWER * estimate.mean[channel]
-            };
-            assert!(!weak(&estimate), "{name}: too weak {estimate:?}");
-            assert!(!weak(&reference), "reference: too weak {reference:?}");
-        }
+        verdicts.hold_part(name, &with_strategy(scene, *look), 2 * looked, &expected, lit);
     }
     verdicts.finish();
 }

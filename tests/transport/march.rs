@@ -3,7 +3,10 @@
 
 use std::sync::Arc;
 
-use crate::common::{self, Estimate, POWER, Verdicts, Z_LIMIT, build, measure, with_strategy};
+use crate::common::{
+    self, Expected, POWER, REFERENCED, Verdicts, Z_LIMIT, build, measure, measure_closely,
+    with_strategy,
+};
 use flambeau::{
     math::mean,
     transport::{
@@ -52,12 +55,6 @@ fn slab(shape: &str, more: &str) -> Scene {
 const ONE_PIECE: &str = "shape = \"box\"";
 const CELLS: &str = "shape = \"ramp\"\naxis = \"z\"\na = 1.0\nb = 0.0";
 
-fn check_channels(verdicts: &mut Verdicts, label: &str, estimate: &Estimate, expected: [f64; 3]) {
-    for (channel, expected) in expected.into_iter().enumerate() {
-        verdicts.check_channel(&format!("{label}, {channel}"), estimate, channel, expected);
-    }
-}
-
 /// Where nothing varies marching is unbiased: the emissivities of adding-doubling (tests/slabs.rs);
 /// the last channel does not scatter.
 #[test]
@@ -68,10 +65,9 @@ fn slabs_glow_as_they_should() {
         let scene = slab(shape, glow);
         let marching = marching(march_step);
         for strategy in [marching, Strategy { nee: false, ..marching }] {
-            let estimate = measure(&with_strategy(&scene, strategy), 20_000);
             let label = format!("{what}, nee {}", strategy.nee);
-            let expected = [0.45482, 0.46333, 1.0 - (-1.0_f64).exp()];
-            check_channels(&mut verdicts, &label, &estimate, expected);
+            let expected = Expected::known(&[0.45482, 0.46333, 1.0 - (-1.0_f64).exp()]);
+            verdicts.hold(&label, &with_strategy(&scene, strategy), 40_000, &expected);
         }
     }
     verdicts.finish();
@@ -91,8 +87,8 @@ fn slabs_let_light_through_as_they_should() {
     "#;
     for (what, shape, march_step) in [("one piece", ONE_PIECE, 1.0), ("cells", CELLS, 4.0)] {
         let scene = with_strategy(&slab(shape, behind), marching(march_step));
-        let estimate = measure(&scene, 60_000);
-        check_channels(&mut verdicts, what, &estimate, [0.44606, 0.12852, (-1.0_f64).exp()]);
+        let expected = Expected::known(&[0.44606, 0.12852, (-1.0_f64).exp()]);
+        verdicts.hold(what, &scene, 120_000, &expected);
     }
     verdicts.finish();
 }
@@ -121,8 +117,8 @@ fn a_ramp_of_extinction() {
         "#,
     );
     let mut verdicts = Verdicts::default();
-    let estimate = measure(&with_strategy(&scene, marching(1.0)), 8192);
-    check_channels(&mut verdicts, "ramp", &estimate, [0.857726, 0.5 * 0.857726, 0.142274]);
+    let expected = Expected::known(&[0.857726, 0.5 * 0.857726, 0.142274]);
+    verdicts.hold("ramp", &with_strategy(&scene, marching(1.0)), 16_384, &expected);
     verdicts.finish();
 }
 
@@ -201,16 +197,12 @@ fn bias_falls_with_the_step() {
 #[test]
 fn uneven_smoke_is_lit_as_by_paths() {
     let scene = build(&("[path]\nmax_scatters = 2\n".to_owned() + UNEVEN + LIGHTS));
-    let reference = measure(&with_strategy(&scene, Preset::Full.strategy()), 64_000);
-    let mut verdicts = Verdicts::default();
+    let full = with_strategy(&scene, Preset::Full.strategy());
+    let expected = Expected::measured(&measure_closely(&full, 160_000));
+    let mut verdicts = Verdicts::of_power(REFERENCED);
     for strategy in [marching(1.0), Strategy { nee: false, ..marching(1.0) }] {
-        let estimate = measure(&with_strategy(&scene, strategy), 64_000);
-        for channel in 0..3 {
-            let label = format!("nee {}, channel {channel}", strategy.nee);
-            verdicts.check_equal(&label, &estimate, &reference, channel);
-            let weak = estimate.error(channel) > POWER * estimate.mean[channel];
-            assert!(!weak, "{label}: too weak {estimate:?}");
-        }
+        let label = format!("nee {}", strategy.nee);
+        verdicts.hold(&label, &with_strategy(&scene, strategy), 128_000, &expected);
     }
     verdicts.finish();
 }
@@ -242,8 +234,8 @@ fn furnaces_are_exact_however_long_the_step() {
         for march_step in [1.0, 100.0] {
             let advanced = Advanced { march_step, ..strategy.advanced };
             let scene = with_strategy(&scene, Strategy { advanced, ..strategy });
-            let estimate = measure(&scene, 15_000);
-            check_channels(&mut verdicts, &format!("{march_step}"), &estimate, [1.0; 3]);
+            let expected = Expected::known(&[1.0; 3]);
+            verdicts.hold(&format!("step {march_step}"), &scene, 30_000, &expected);
         }
     }
     verdicts.finish();

@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::common::{self, Z_LIMIT, build, half_of_strategies, name, seed, shared, with_strategy};
+use crate::common::{
+    self, Expected, Verdicts, build, half_of_strategies, name, seed, shared, with_strategy,
+};
 use flambeau::{
     image::npy,
     render::{
@@ -10,45 +12,82 @@ use flambeau::{
         estimate::{PixelEstimate, gray},
     },
     transport::{
-        Scene,
+        PreparedFrame, Scene,
         strategy::{BoostMode, Preset, Strategy},
     },
 };
 use glam::UVec2;
 use rayon::prelude::*;
 
+/// Pixels along an edge of the exact picture.
 const SIDE: usize = 128;
+/// Of its rows and columns every second is rendered.
+const STEP: usize = 2;
 /// Pixels along the edge of a block; each block of each picture is one comparison.
 const BLOCK: usize = 16;
 
-/// Gray mean of one pixel and the variance of it, as the film's accumulators tell it.
-type Pixel = [f64; 2];
-
-fn render(scene: &Scene, samples: u32) -> Vec<Pixel> {
-    let size = UVec2::splat(SIDE as u32);
-    let frame = crate::common::frame_of(Arc::new(scene.clone()), size, seed());
-    (0..size.element_product())
-        .into_par_iter()
-        .map(|i| {
-            let mut film = Film::new(UVec2::ONE).unwrap();
-            let pixel = UVec2::new(i % size.x, i / size.x);
-            (0..samples).for_each(|s| film.add(UVec2::ZERO, &frame.sample(pixel, s)));
-            let estimate = PixelEstimate::of(&film, UVec2::ZERO).unwrap();
-            [gray(estimate.mean()), estimate.gray_variance().unwrap()]
-        })
-        .collect()
+/// The pixels that are rendered, by block.
+fn pixels() -> impl Iterator<Item = (usize, UVec2)> {
+    let places = (0..SIDE).step_by(STEP).flat_map(|y| (0..SIDE).step_by(STEP).map(move |x| (x, y)));
+    places.map(|(x, y)| (y / BLOCK * (SIDE / BLOCK) + x / BLOCK, UVec2::new(x as u32, y as u32)))
 }
 
-/// Mean over the pixels, and the variance of that mean, by stratified sampling: each pixel's own
-/// variance counts, not the picture's.
-fn mean_and_variance<'a>(pixels: impl Iterator<Item = &'a Pixel>) -> (f64, f64) {
-    let (mut mean, mut variance, mut count) = (0.0, 0.0, 0.0);
-    for pixel in pixels {
-        mean += pixel[0];
-        variance += pixel[1];
-        count += 1.0;
+/// A picture that is rendered further and further.
+struct Picture {
+    frame: PreparedFrame,
+    films: Vec<Film>,
+    samples: u32,
+}
+
+impl Picture {
+    fn new(scene: Scene, number: u64) -> Self {
+        let (size, seed) = (UVec2::splat(SIDE as u32), seed().wrapping_add(number));
+        let films = pixels().map(|_| Film::new(UVec2::ONE).unwrap()).collect();
+        Self { frame: crate::common::frame_of(Arc::new(scene), size, seed), films, samples: 0 }
     }
-    (mean / count, variance / (count * count))
+
+    /// The gray mean, with its variance, by so many samples a pixel: of the picture, then of each of
+    /// the `blocks`. By stratified sampling each pixel's own variance counts, not the picture's.
+    fn means(&mut self, samples: u32, blocks: &[usize]) -> Vec<[f64; 2]> {
+        let (frame, present) = (&self.frame, self.samples);
+        let pixels: Vec<(usize, UVec2)> = pixels().collect();
+        self.films.par_iter_mut().zip(&pixels).for_each(|(film, (_, pixel))| {
+            (present..samples).for_each(|s| film.add(UVec2::ZERO, &frame.sample(*pixel, s)));
+        });
+        self.samples = samples;
+        let values: Vec<(usize, [f64; 2])> = std::iter::zip(&self.films, &pixels)
+            .map(|(film, (block, _))| {
+                let estimate = PixelEstimate::of(film, UVec2::ZERO).unwrap();
+                (*block, [gray(estimate.mean()), estimate.gray_variance().unwrap()])
+            })
+            .collect();
+        let of = |wanted: Option<usize>| {
+            let inside = values.iter().filter(|(block, _)| wanted.is_none_or(|w| w == *block));
+            let (mut sum, mut count) = ([0.0; 2], 0.0);
+            for (_, value) in inside {
+                (0..2).for_each(|i| sum[i] += value[i]);
+                count += 1.0;
+            }
+            [sum[0] / count, sum[1] / (count * count)]
+        };
+        std::iter::once(None).chain(blocks.iter().copied().map(Some)).map(of).collect()
+    }
+}
+
+/// The mean of the exact picture's pixels that are rendered, then those of its blocks, and which
+/// blocks these are. Blocks the fire hardly touches are too dark to be found by a few thousand paths.
+fn expected(exact: &[f64]) -> (Expected, Vec<usize>) {
+    let mean = |wanted: Option<usize>| {
+        let inside = pixels().filter(|(block, _)| wanted.is_none_or(|w| w == *block));
+        let values: Vec<f64> =
+            inside.map(|(_, at)| exact[at.y as usize * SIDE + at.x as usize]).collect();
+        values.iter().sum::<f64>() / values.len() as f64
+    };
+    let brightest = exact.iter().copied().fold(0.0, f64::max);
+    let blocks = (0..(SIDE / BLOCK).pow(2)).filter(|block| mean(Some(*block)) >= 1e-3 * brightest);
+    let blocks: Vec<usize> = blocks.collect();
+    let values = std::iter::once(None).chain(blocks.iter().copied().map(Some)).map(mean);
+    (Expected::known(&values.collect::<Vec<_>>()).deciding(1), blocks)
 }
 
 #[test]
@@ -56,10 +95,8 @@ fn fire_absorb_matches_its_exact_picture() {
     let Some(file) = shared("peers/flame.vdb") else { return };
     let Some(exact) = shared("peers/fire_absorb_exact.npy") else { return };
     let (_, exact) = npy::read(&exact).unwrap();
-    let exact: Vec<f64> = exact
-        .iter()
-        .map(|&[r, g, b, _]| [r, g, b].map(f64::from).iter().sum::<f64>() / 3.0)
-        .collect();
+    let exact: Vec<f64> =
+        exact.iter().map(|p| p[..3].iter().map(|&v| f64::from(v)).sum::<f64>() / 3.0).collect();
     let scene = build(&format!(
         r#"
         [camera]
@@ -73,62 +110,24 @@ fn fire_absorb_matches_its_exact_picture() {
         "#,
         file.display()
     ));
-    let mut failures = Vec::new();
+    let (expected, blocks) = expected(&exact);
+    let (mut verdicts, mut closely) =
+        (Verdicts::default(), Verdicts::of_power(0.3 * common::POWER));
     let mut optimal = Strategy::default();
     optimal.advanced.boost_mode = BoostMode::Optimal;
     // Nothing scatters, so that a look at the fire never happens: once is enough.
     let looking = half_of_strategies().into_iter().filter(|strategy| strategy.nee);
     for strategy in looking.chain([optimal]) {
-        // Samples that bring the picture's standard error to 0.46 %, by how much each brings; evenly
-        // spread samples along a walk of their own bring it lower still.
-        let samples = match (
-            strategy.emission_ratio_tracking,
-            strategy.emission_decoupling,
-            strategy.majorant_boost,
-        ) {
-            (true, _, true) => 64,
-            (false, true, true) => 240,
-            (true, _, false) | (_, true, false) => 768,
-            (false, false, _) => 1536,
-        };
-        // The default brings it far lower at the same cost.
+        // The default brings a far lower error at the same cost.
         let is_default = strategy.preset() == Some(Preset::Full)
             && strategy.advanced.boost_mode == BoostMode::default();
-        let power = if is_default { 0.0015 } else { common::POWER };
-        let pixels = render(&with_strategy(&scene, strategy), samples);
-        let mut name = name(&strategy);
-        if strategy.advanced.boost_mode == BoostMode::Optimal {
-            name += ", optimal";
-        }
-        compare(&name, &pixels, &exact, power, &mut failures);
+        let verdicts = if is_default { &mut closely } else { &mut verdicts };
+        let mut picture = Picture::new(with_strategy(&scene, strategy), verdicts.next_seed());
+        let label = format!("{} {:?}", name(&strategy), strategy.advanced.boost_mode);
+        verdicts.follow(&label, &strategy, 16_384, &expected, |samples| {
+            picture.means(samples, &blocks)
+        });
     }
-    assert!(failures.is_empty(), "{}", failures.join("\n"));
-}
-
-fn compare(name: &str, pixels: &[Pixel], exact: &[f64], power: f64, failures: &mut Vec<String>) {
-    let (mean, variance) = mean_and_variance(pixels.iter());
-    let expected = exact.iter().sum::<f64>() / exact.len() as f64;
-    let (error, z) = (variance.sqrt(), (mean - expected) / variance.sqrt());
-    println!("{name}: {mean:.6} ± {error:.6}, exact {expected:.6}, z {z:.2}");
-    if z.abs() > Z_LIMIT || error > power * expected {
-        failures.push(format!("{name}: {mean} ± {error}, exact {expected}"));
-    }
-    for by in (0..SIDE).step_by(BLOCK) {
-        for bx in (0..SIDE).step_by(BLOCK) {
-            let inside = |i: &usize| {
-                (bx..bx + BLOCK).contains(&(i % SIDE)) && (by..by + BLOCK).contains(&(i / SIDE))
-            };
-            let block: Vec<usize> = (0..SIDE * SIDE).filter(inside).collect();
-            let (mean, variance) = mean_and_variance(block.iter().map(|&i| &pixels[i]));
-            let expected = block.iter().map(|&i| exact[i]).sum::<f64>() / block.len() as f64;
-            // Blocks the fire hardly touches are too dark to be found by a few thousand paths.
-            if expected < 1e-3 * exact.iter().copied().fold(0.0, f64::max) {
-                continue;
-            }
-            let z = (mean - expected) / variance.sqrt().max(1e-12);
-            if z.abs() > Z_LIMIT {
-                failures.push(format!("{name}: block {bx}, {by}: {mean}, exact {expected}, z {z}"));
-            }
-        }
-    }
+    verdicts.finish();
+    closely.finish();
 }

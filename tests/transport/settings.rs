@@ -1,9 +1,11 @@
 //! Every combination of the toggles with the finer keys pairwise: one picture, block by block.
 
-use crate::common::{Estimate, Z_LIMIT, build, every_setting, framed, full_name, with_strategy};
+use crate::common::{
+    Expected, Verdicts, build, every_setting, framed_by_seed, full_name, with_strategy,
+};
 use flambeau::{
     render::{Film, estimate::PixelEstimate},
-    transport::{PathSample, Scene, strategy::Preset},
+    transport::{PathSample, PreparedFrame, Scene, strategy::Preset},
 };
 use glam::UVec2;
 use rayon::prelude::*;
@@ -12,8 +14,8 @@ const SIDE: u32 = 32;
 /// Largest standard error of the mean over the film, relative to it. The toggles alone are held
 /// closer elsewhere; what is wrong with a finer key shows in dozens of settings here.
 const POWER: f64 = 0.01;
-/// Samples that are added at once.
-const ROUND: u32 = 16;
+/// Samples that the settings are held against.
+const REFERENCE: u32 = 512;
 /// Blocks along an edge of the film.
 const BLOCKS: u32 = 2;
 
@@ -76,32 +78,54 @@ const FIRE_AND_SMOKE: &str = r#"
     material = { type = "conductor", alpha = 0.15, reflectance = 0.9 }
 "#;
 
-/// What the camera sees itself and what light brings to what it sees: each with the mean and its
-/// variance of every block of the film, and of all of it last.
-///
-/// So many samples as bring the standard error of the means over the film within `power`, and `most`
-/// at most.
-fn seen_and_lit(scene: &Scene, power: f64, most: u32) -> [Vec<Estimate>; 2] {
-    let frame = framed(scene, SIDE);
-    let blank = || [0, 1].map(|_| Film::new(UVec2::ONE).unwrap());
-    let mut pixels: Vec<[Film; 2]> = (0..SIDE * SIDE).map(|_| blank()).collect();
-    let mut samples = 0;
-    loop {
-        pixels.par_iter_mut().enumerate().for_each(|(i, films)| {
+/// What the camera sees itself and what light brings to what it sees, on a film that is filled
+/// further and further.
+struct Picture {
+    frame: PreparedFrame,
+    pixels: Vec<[Film; 2]>,
+    samples: u32,
+}
+
+impl Picture {
+    fn new(scene: &Scene, seed: u64) -> Self {
+        let blank = || [0, 1].map(|_| Film::new(UVec2::ONE).unwrap());
+        let pixels = (0..SIDE * SIDE).map(|_| blank()).collect();
+        Self { frame: framed_by_seed(scene, SIDE, seed), pixels, samples: 0 }
+    }
+
+    /// The mean of each channel of both, with its variance, by so many samples a pixel: of all of
+    /// the film first, then of each of its blocks.
+    fn means(&mut self, samples: u32) -> Vec<[f64; 2]> {
+        let (frame, present) = (&self.frame, self.samples);
+        self.pixels.par_iter_mut().enumerate().for_each(|(i, films)| {
             let pixel = UVec2::new(i as u32 % SIDE, i as u32 / SIDE);
-            for s in samples..samples + ROUND {
+            for s in present..samples {
                 add_apart(films, &frame.sample(pixel, s));
             }
         });
-        samples += ROUND;
-        let parts = [0, 1].map(|part| {
-            blocks(&pixels.iter().map(|films| estimate(&films[part])).collect::<Vec<_>>())
-        });
-        let all = parts.each_ref().map(|part| *part.last().unwrap());
-        let enough = |all: &Estimate| all.error(0) <= 0.98 * power * all.mean[0];
-        if samples >= most || all.iter().all(enough) {
-            return parts;
+        self.samples = samples;
+        let blocks = std::iter::once(BLOCKS * BLOCKS).chain(0..BLOCKS * BLOCKS);
+        let parts = blocks.flat_map(|block| [(block, 0), (block, 1)]);
+        parts.flat_map(|(block, part)| self.mean_of_block(block, part)).collect()
+    }
+
+    /// Of one of the blocks, or of all where there is none of this number.
+    fn mean_of_block(&self, wanted: u32, part: usize) -> [[f64; 2]; 3] {
+        let edge = SIDE / BLOCKS;
+        let block = |i: usize| (i as u32 / SIDE / edge) * BLOCKS + i as u32 % SIDE / edge;
+        let inside = |i: &usize| wanted == BLOCKS * BLOCKS || block(*i) == wanted;
+        let (mut sums, mut count) = ([[0.0; 2]; 3], 0.0);
+        for films in (0..self.pixels.len()).filter(inside).map(|i| &self.pixels[i]) {
+            assert_eq!(films[part].totals.non_finite, 0);
+            let estimate = PixelEstimate::of(&films[part], UVec2::ZERO).unwrap();
+            let (mean, variance) = (estimate.mean(), estimate.variance().unwrap());
+            for (c, sum) in sums.iter_mut().enumerate() {
+                sum[0] += mean[c];
+                sum[1] += variance[c];
+            }
+            count += 1.0;
         }
+        sums.map(|[mean, variance]| [mean / count, variance / (count * count)])
     }
 }
 
@@ -111,61 +135,20 @@ fn add_apart(films: &mut [Film; 2], path: &PathSample) {
     films[1].add(UVec2::ZERO, &PathSample { direct, indirect, ..Default::default() });
 }
 
-fn estimate(film: &Film) -> Estimate {
-    assert_eq!(film.totals.non_finite, 0);
-    let estimate = PixelEstimate::of(film, UVec2::ZERO).unwrap();
-    Estimate { mean: estimate.mean(), variance: estimate.variance().unwrap() }
-}
-
-fn blocks(pixels: &[Estimate]) -> Vec<Estimate> {
-    let edge = SIDE / BLOCKS;
-    let block = |i: usize| {
-        let (x, y) = (i as u32 % SIDE / edge, i as u32 / SIDE / edge);
-        y * BLOCKS + x
-    };
-    (0..=BLOCKS * BLOCKS)
-        .map(|wanted| {
-            let inside = |i: &usize| wanted == BLOCKS * BLOCKS || block(*i) == wanted;
-            let chosen: Vec<&Estimate> =
-                (0..pixels.len()).filter(inside).map(|i| &pixels[i]).collect();
-            let count = chosen.len() as f64;
-            Estimate {
-                mean: [0, 1, 2].map(|c| chosen.iter().map(|p| p.mean[c]).sum::<f64>() / count),
-                variance: [0, 1, 2]
-                    .map(|c| chosen.iter().map(|p| p.variance[c]).sum::<f64>() / (count * count)),
-            }
-        })
-        .collect()
-}
-
 #[test]
 fn every_setting_gives_one_picture() {
     let scene = build(FIRE_AND_SMOKE);
-    let references =
-        seen_and_lit(&with_strategy(&scene, Preset::Full.strategy()), 0.25 * POWER, 1024);
-    let mut failures = Vec::new();
+    let full = with_strategy(&scene, Preset::Full.strategy());
+    let expected = Expected::measured_all(&Picture::new(&full, 0).means(REFERENCE));
+    // The six means over the whole film decide how many samples there are.
+    let expected = expected.deciding(6);
+    let mut verdicts = Verdicts::of_power(POWER);
     let settings = every_setting();
     assert!(settings.len() > 60, "{}", settings.len());
     for setting in settings {
-        let found = seen_and_lit(&with_strategy(&scene, setting), POWER, 512);
-        for (part, what) in ["seen", "lit"].into_iter().enumerate() {
-            let name = format!("{what}, {}", full_name(&setting));
-            for (place, (a, b)) in std::iter::zip(&found[part], &references[part]).enumerate() {
-                for c in 0..3 {
-                    let error = (a.variance[c] + b.variance[c]).sqrt();
-                    let z = (a.mean[c] - b.mean[c]) / error.max(1e-12);
-                    if z.abs() > Z_LIMIT {
-                        failures.push(format!("{name}, place {place}: {a:?}, {b:?}, z {z:.1}"));
-                    }
-                }
-            }
-            let all = found[part].last().unwrap();
-            let (mean, error) = (all.mean[0], all.error(0));
-            println!("{name}: {mean:.6} ± {error:.6}, {:.2} %", 100.0 * error / mean);
-            if error > POWER * mean {
-                failures.push(format!("{name}: too weak, {error} of {mean}"));
-            }
-        }
+        let mut picture = Picture::new(&with_strategy(&scene, setting), verdicts.next_seed());
+        let means = |samples| picture.means(samples);
+        verdicts.follow(&full_name(&setting), &setting, 512, &expected, means);
     }
-    assert!(failures.is_empty(), "{}", failures.join("\n"));
+    verdicts.finish();
 }

@@ -1,9 +1,7 @@
 //! Trackers and estimators of transmittance: whichever is chosen, the same means, known in closed
 //! form or by quadrature.
 
-use crate::common::{
-    self, Estimate, Verdicts, build, measure, measure_enough, measure_to, with_strategy,
-};
+use crate::common::{self, Estimate, Expected, Verdicts, build, measure, with_strategy};
 use flambeau::{
     math::{PathRng, Ray, Rgb},
     transport::{
@@ -94,11 +92,8 @@ fn slabs_channel_by_channel() {
                 _ => (&alike, 1),
             };
             let scene = with_strategy(scene, strategy);
-            let estimate = measure_to(&scene, 400_000, verdicts.power(), |path| path.beauty());
-            for (channel, expected) in values.into_iter().enumerate().take(channels) {
-                let label = format!("{what}, {name}, channel {channel}");
-                verdicts.check_channel(&label, &estimate, channel, expected);
-            }
+            let expected = Expected::known(&values[..channels]);
+            verdicts.hold(&format!("{what}, {name}"), &scene, 400_000, &expected);
         }
     }
     verdicts.finish();
@@ -111,11 +106,8 @@ fn absorbing_slabs_by_the_scattering_walk() {
     let mut verdicts = Verdicts::default();
     let by_it = |(_, strategy): &(_, Strategy)| !strategy.emission_ratio_tracking;
     for (name, strategy) in trackers().into_iter().filter(by_it) {
-        let estimate = measure_enough(&with_strategy(&scene, strategy), 1_000_000);
-        for (channel, depth) in [0.5, 1.0, 1.5_f64].into_iter().enumerate() {
-            let label = format!("{name}, channel {channel}");
-            verdicts.check_channel(&label, &estimate, channel, (-depth).exp());
-        }
+        let expected = Expected::known(&[0.5, 1.0, 1.5_f64].map(|depth| (-depth).exp()));
+        verdicts.hold(&name, &with_strategy(&scene, strategy), 1_000_000, &expected);
     }
     verdicts.finish();
 }
@@ -150,10 +142,8 @@ fn furnaces_by_every_tracker() {
     let scene = build(&text);
     let mut verdicts = Verdicts::default();
     for (name, strategy) in trackers() {
-        let estimate = measure_enough(&with_strategy(&scene, strategy), 200_000);
-        for channel in 0..3 {
-            verdicts.check_channel(&format!("{name} {channel}"), &estimate, channel, 1.0);
-        }
+        let expected = Expected::known(&[1.0; 3]);
+        verdicts.hold(&name, &with_strategy(&scene, strategy), 200_000, &expected);
     }
     verdicts.finish();
 }
@@ -192,16 +182,10 @@ fn lit() -> Scene {
 const POWER: f64 = 0.015;
 
 fn agree(scene: &Scene, reference: &Estimate, settings: Vec<(String, Strategy)>, paths: u32) {
-    let mut verdicts = Verdicts::default();
+    let mut verdicts = Verdicts::of_power(POWER);
+    let expected = Expected::measured(reference);
     for (name, strategy) in settings {
-        let scene = with_strategy(scene, strategy);
-        let estimate = measure_to(&scene, 2 * paths, POWER, |path| path.beauty());
-        for channel in 0..3 {
-            let label = format!("{name}, channel {channel}");
-            verdicts.check_equal(&label, &estimate, reference, channel);
-            let weak = estimate.error(channel) > POWER * estimate.mean[channel];
-            assert!(!weak, "{label}: too weak {estimate:?}");
-        }
+        verdicts.hold(&name, &with_strategy(scene, strategy), 2 * paths, &expected);
     }
     verdicts.finish();
 }
@@ -307,7 +291,8 @@ fn quadrature(scene: &Scene, ray: &Ray, length: f32) -> DVec3 {
 
 #[test]
 fn estimators_of_transmittance_have_its_mean() {
-    const ESTIMATES: u32 = 50_000;
+    /// Most of them in a batch, of which there are as many as samples of a pixel elsewhere.
+    const BATCH: u32 = 256;
     /// Ratio tracking is noisy where little gets through.
     const SOME: f64 = 0.015;
     let mut verdicts = Verdicts::of_power(SOME);
@@ -316,27 +301,31 @@ fn estimators_of_transmittance_have_its_mean() {
         let expected = quadrature(&scene, &ray, length);
         assert!(expected.min_element() < 0.9, "{name}: there is something in the way, {expected}");
         for estimator in ESTIMATORS {
-            let (mut sum, mut squares) = (DVec3::ZERO, DVec3::ZERO);
+            let (mut sum, mut squares, mut present) = (DVec3::ZERO, DVec3::ZERO, 0);
             let mut reads = 0;
-            for index in 0..ESTIMATES {
-                let mut rng = PathRng::new(common::seed(), UVec2::ZERO, index);
-                let medium = scene.world.along(ray, length);
-                let (value, read) = shadow::transmittance(medium, estimator, &mut rng);
-                sum += value.as_dvec3();
-                squares += (value * value).as_dvec3();
-                reads += read;
-            }
+            let seed = common::seed().wrapping_add(verdicts.next_seed());
+            let mean = |batches: u32| {
+                for index in present..batches * BATCH {
+                    let mut rng = PathRng::new(seed, UVec2::ZERO, index);
+                    let medium = scene.world.along(ray, length);
+                    let (value, read) = shadow::transmittance(medium, estimator, &mut rng);
+                    sum += value.as_dvec3();
+                    squares += (value * value).as_dvec3();
+                    reads += read;
+                }
+                present = batches * BATCH;
+                let n = f64::from(present);
+                let mean = sum / n;
+                let variance = (squares / n - mean * mean).max(DVec3::ZERO) / (n - 1.0);
+                // The quadrature errs where fields have kinks and volumes a border.
+                let variance = variance + (1e-4 * expected) * (1e-4 * expected);
+                (0..3).map(|c| [mean[c], variance[c]]).collect()
+            };
+            let advanced = Advanced { transmittance: estimator, ..Advanced::default() };
+            let strategy = Strategy { advanced, ..Strategy::default() };
+            let label = format!("{name}, {estimator:?}");
+            verdicts.follow(&label, &strategy, 400, &Expected::known(&expected.to_array()), mean);
             assert!(reads > 0, "{name}: nothing was read");
-            let n = f64::from(ESTIMATES);
-            let mean = sum / n;
-            let variance = (squares / n - mean * mean).max(DVec3::ZERO) / (n - 1.0);
-            // The quadrature errs where fields have kinks and volumes a border.
-            let variance = variance + (1e-4 * expected) * (1e-4 * expected);
-            let estimate = Estimate { mean: mean.into(), variance: variance.into() };
-            for channel in 0..3 {
-                let label = format!("{name}, {estimator:?}, channel {channel}");
-                verdicts.check_channel(&label, &estimate, channel, expected[channel]);
-            }
         }
     }
     verdicts.finish();
