@@ -2,8 +2,8 @@
 
 use glam::Vec3A;
 
+use super::grid_columns::{FAIRLY, columns, quantile};
 use super::note::{About, Note};
-use super::probe::{FAIRLY, columns, quantile};
 use super::roles::Candidate;
 use crate::format::two_digits;
 use crate::math::{Aabb, luminance};
