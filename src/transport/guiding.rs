@@ -33,7 +33,7 @@ const STRAIGHT: f32 = 0.3;
 pub(super) fn light_choice(scene: &Scene, context: &PathContext, vertex: &Vertex) -> LightChoice {
     let choice = direct::choice(&scene.strategy);
     let from = vertex.receiver();
-    match context.probes.and_then(|probes| probes.scores(from.position)) {
+    match context.probes.and_then(|probes| probes.light_scores(from.position)) {
         Some(scores) => scene
             .lights
             .choice_by(scores, &from, choice.volumes, |direction| vertex.rough_value(direction)),

@@ -15,12 +15,12 @@ mod brightness;
 mod caustic_lobes;
 mod caustics;
 mod distance_pdf;
+mod light_scores;
 mod octree;
 mod place;
 mod probe;
 #[allow(clippy::module_inception, reason = "the folder is named after its main type")]
 mod probes;
-mod scores;
 pub(super) mod stages;
 mod view;
 
