@@ -245,7 +245,7 @@ pub(crate) fn add_sample(count: &mut u32, sums: &mut Sums, sample: &PathSample) 
         paths: 1,
         tracking_steps: u64::from(sample.tracking_steps),
         non_finite: u64::from(!usable),
-        guard_hits: u64::from(sample.guard_hit),
+        guard_hits: u64::from(sample.was_cut),
     }
 }
 
@@ -313,7 +313,7 @@ mod tests {
         }
         film.add(UVec2::ZERO, &PathSample { depth: Some(f32::NAN), ..gray(1.0) });
         film.add(UVec2::ZERO, &PathSample { alpha: f32::NAN, tracking_steps: 5, ..gray(1.0) });
-        film.add(UVec2::ZERO, &PathSample { tracking_steps: 7, guard_hit: true, ..gray(3.0) });
+        film.add(UVec2::ZERO, &PathSample { tracking_steps: 7, was_cut: true, ..gray(3.0) });
         let sums = film.sums(UVec2::ZERO).unwrap();
         assert_eq!((sums.direct[0].value(), sums.depth_count), (3.0, 1));
         assert_eq!(sums.steps.value(), 12.0, "what a failed sample cost was spent all the same");

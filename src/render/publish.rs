@@ -237,7 +237,7 @@ mod tests {
     #[test]
     fn bad_paths_are_in_the_figures() {
         let mut film = Film::new(UVec2::ONE).unwrap();
-        film.add(UVec2::ZERO, &PathSample { guard_hit: true, ..red(1.0) });
+        film.add(UVec2::ZERO, &PathSample { was_cut: true, ..red(1.0) });
         film.add(UVec2::ZERO, &red(f32::NAN));
         let stats = render_stats(&film, 0.0, None, false);
         assert_eq!((stats.paths, stats.guard_hits, stats.non_finite), (2, 1, 1));
