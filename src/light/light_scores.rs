@@ -1,5 +1,5 @@
-//! Scores of the lights around a place: the visibility of the best few lights, and the share of the
-//! choices left to the hierarchy for all others.
+//! Light scores around a place: the visibility of the best few lights, and the share of the choices
+//! that is left to the hierarchy for all others.
 //!
 //! At a receiver x light l is chosen with probability q_l(x) = s_l(x) + r h_l(x), where h_l is the
 //! hierarchy's and r, the share that is left to it, never vanishes: whatever the scores, each light

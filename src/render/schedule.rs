@@ -1,4 +1,5 @@
-//! The order of samples, and the times at which they are shown: pure logic, no threads and no clocks.
+//! The order of samples, and the times at which they are shown: pure logic, no threads and no
+//! clocks.
 //!
 //! The first pass visits pixels coarse to fine. At stride s each block of s × s pixels is stood for
 //! by the pixel in its middle, sampled at its own position, so nothing is thrown away; the pixels

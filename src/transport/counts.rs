@@ -8,8 +8,8 @@
 //! | path continuation, near the camera inside of a medium | the weight window |
 //! | path continuation, elsewhere | Russian roulette on the throughput |
 //!
-//! Unbiased whatever the numbers: splitting and roulette compensate by their factors, guided
-//! flights by their number in the balance heuristic.
+//! The estimate is unbiased whatever the numbers: splitting and roulette compensate by their factors,
+//! guided flights by their number in the balance heuristic.
 
 use super::context::PathContext;
 use super::probes::{Brightness, DistancePdf};

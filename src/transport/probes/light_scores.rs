@@ -11,7 +11,7 @@ use crate::{
 
 /// Shadow rays to lights from each probe.
 const SHADOW_RAYS: u32 = 32;
-/// Points that are tried for one that scatters before a shadow ray starts from any.
+/// Most random points that are tried for the start of a shadow ray, until one of them scatters.
 const TRIES: u32 = 3;
 
 /// LightScores of the lights around `bounds`, for the probe of a node; `None` where no light is visible.

@@ -33,7 +33,7 @@ pub struct Probes {
     pub(super) outside: f32,
     /// Mean cosine of the phase functions, weighted by scattered power.
     pub(super) mean_cosine: f32,
-    /// Share of the lights' light that is scattered at least once.
+    /// Fraction of the lights' power that is scattered at least once.
     pub(super) scattered: f32,
 }
 
