@@ -18,8 +18,8 @@ use crate::render::film::{Film, Totals};
 /// Header of a snapshot: how its picture was rendered.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SnapshotHeader {
-    /// All settings as a scene file, with absolute file names. `strategy` and `seed` repeat parts of
-    /// it for other programs.
+    /// All settings as a scene file, with absolute file names. `strategy` and `seed` repeat parts
+    /// of it for other programs.
     pub scene: String,
     /// The sampling strategy as TOML.
     pub strategy: String,

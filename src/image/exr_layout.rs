@@ -26,8 +26,8 @@ pub fn channel_names() -> Vec<String> {
 }
 
 /// Names of the channels that hold the running sums, in the order of the words of [`Sums`]: each
-/// sum with its remainder, and the count of depths. Whoever moves a field of [`Sums`] moves its name
-/// here.
+/// sum with its remainder, and the count of depths. Whoever moves a field of [`Sums`] moves its
+/// name here.
 pub fn state_names() -> Vec<String> {
     let mut names = Vec::with_capacity(STATE_WORDS);
     let mut pair = |layer: &str, channel: &str| {
@@ -66,8 +66,8 @@ pub fn push_pixel(film: &Film, pixel: UVec2, planes: &mut [Vec<f32>]) {
     std::iter::zip(state, words).for_each(|(plane, value)| plane.push(value));
 }
 
-/// The channels for looking at, by name, each with its value in a pixel that has these `samples` and
-/// shows this estimate; 0 without one.
+/// The channels for looking at, by name, each with its value in a pixel that has these `samples`
+/// and shows this estimate; 0 without one.
 fn view_channels(
     shown: Option<&PixelEstimate<'_>>,
     samples: u32,

@@ -1,5 +1,5 @@
-//! Lights: those that a vertex samples directly, those that a scattered ray meets, and the densities of
-//! both.
+//! Lights: those that a vertex samples directly, those that a scattered ray meets, and the
+//! densities of both.
 
 mod choice;
 mod emitter;

@@ -28,8 +28,8 @@ const LARGEST_VALUE: f32 = 1.0e30;
 /// The most pixels of a film, so that sizes in bytes stay far from overflow.
 const MAX_PIXELS: u64 = 1 << 28;
 
-/// The running sums of one pixel, one for each field of [`PathSample`] under the same name, but for the
-/// beauty. The order of the fields is that of the `state.*` channels of a snapshot, which
+/// The running sums of one pixel, one for each field of [`PathSample`] under the same name, but for
+/// the beauty. The order of the fields is that of the `state.*` channels of a snapshot, which
 /// `image::exr_layout` names.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]

@@ -114,8 +114,9 @@ impl Schedule {
         }
     }
 
-    /// Gives all samples to the pixels of `area`, some of the film's, which have `passes` samples or
-    /// more, or to all pixels. The first pass goes over the whole film all the same, so that there is a picture.
+    /// Gives all samples to the pixels of `area`, some of the film's, which have `passes` samples
+    /// or more, or to all pixels. The first pass goes over the whole film all the same, so that
+    /// there is a picture.
     pub fn focus(&mut self, area: Option<Area>, passes: u32) {
         self.area = area;
         if self.passes > 0 {

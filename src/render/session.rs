@@ -2,8 +2,8 @@
 //! hands over pictures. No call here waits for sampling.
 //!
 //! A request is provisional while its sampler still lacks its light probes: it shows a picture at
-//! once, with more noise, and [`Session::improve`] brings the sampler that has them. Samples of both
-//! are never mixed.
+//! once, with more noise, and [`Session::improve`] brings the sampler that has them. Samples of
+//! both are never mixed.
 
 mod active;
 mod phase;

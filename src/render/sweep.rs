@@ -1,5 +1,5 @@
-//! A sweep renders every toggle alone and left out, for a few seconds each. It finds the strategy to
-//! leave on for a shot, the gain of each toggle alone, and the loss without it.
+//! A sweep renders every toggle alone and left out, for a few seconds each. It finds the strategy
+//! to leave on for a shot, the gain of each toggle alone, and the loss without it.
 //!
 //! [`plan()`] lists the trials, [`sweep`] renders them in time slices on the same threads,
 //! [`Ranking`] compares them pairwise as a comparison of two does, and [`words`] puts the result

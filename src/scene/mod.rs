@@ -8,8 +8,8 @@
 //! - `load`, `files`, `embedded`: opening a source by name; [`cache`]: volume files in memory.
 //! - `parse`, `overrides`: TOML text to settings, or, by [`apply`], values of `--set` laid over
 //!   settings later; `save`: settings to text.
-//! - `check`, `rules`: errors in keys and values, for `parse`; `schema`, [`keys`]: the schema and its
-//!   keys.
+//! - `check`, `rules`: errors in keys and values, for `parse`; `schema`, [`keys`]: the schema and
+//!   its keys.
 //! - [`settings`]: the settings struct; [`effect`]: toggles that change nothing in a scene.
 //! - `assemble`: settings to the scene that is rendered.
 //! - `guess`, `conventions`, `grid_names`, `role`: settings for a bare volume; `fit_camera`: its

@@ -14,8 +14,8 @@ pub struct PathContext<'s> {
     pub probes: Option<&'s Probes>,
     /// Mean in-scattered radiance over the film, estimated from the probes.
     pub brightness: Brightness,
-    /// Scale of the number of guided flights of a camera ray, relative to what the probes propose; 0
-    /// switches guided flights off.
+    /// Scale of the number of guided flights of a camera ray, relative to what the probes propose;
+    /// 0 switches guided flights off.
     pub flights_scale: f32,
 }
 
@@ -26,14 +26,15 @@ impl<'s> PathContext<'s> {
         self.probes_for_directions(strategy).filter(|_| self.flights_scale > 0.0)
     }
 
-    /// Probes that guide directions at vertices; `None` where the strategy does not guide. The pilot
-    /// pass does not switch them off: caustics are worth guiding to without guided flights as well.
+    /// Probes that guide directions at vertices; `None` where the strategy does not guide. The
+    /// pilot pass does not switch them off: caustics are worth guiding to without guided flights as
+    /// well.
     pub(super) fn probes_for_directions(&self, strategy: &Strategy) -> Option<&'s Probes> {
         self.probes.filter(|_| strategy.guides())
     }
 
-    /// Probes that choose lights. Their light scores serve whether or not the strategy guides: probes
-    /// that need not choose lights have none.
+    /// Probes that choose lights. Their light scores serve whether or not the strategy guides:
+    /// probes that need not choose lights have none.
     pub(super) fn probes_for_lights(&self) -> Option<&'s Probes> {
         self.probes
     }

@@ -3,13 +3,13 @@
 //!
 //! | technique | rule |
 //! |---|---|
-//! | guided flights of a camera ray | proportional to the radiance scattered into it; scaled by the pilot |
+//! | guided flights of a camera ray | as the radiance scattered into it, times the pilot's scale |
 //! | light samples (next-event estimation) | one |
 //! | path continuation, near the camera inside of a medium | the weight window |
 //! | path continuation, elsewhere | Russian roulette on the throughput |
 //!
-//! The estimate is unbiased whatever the numbers: splitting and roulette compensate by their factors,
-//! guided flights by their number in the balance heuristic.
+//! The estimate is unbiased whatever the numbers: splitting and roulette compensate by their
+//! factors, guided flights by their number in the balance heuristic.
 
 use super::context::PathContext;
 use super::probes::{Brightness, DistancePdf};
@@ -123,12 +123,11 @@ pub(super) struct Allocation {
 
 impl Allocation {
     /// Number of guided flights under the guides of `distance_pdf`, `flights_scale` times what the
-    /// probes propose. The noise of a pixel is about
-    /// in proportion to its light, so that the picture's falls fastest for the same cost where each
-    /// gets flights in that proportion; fewer where an unguided flight gathers all the light as
-    /// well, as in a cloud, or where the noise is that of surfaces. But each ray gets one at least,
-    /// or the part of one that the scale allows, as it does from probes alone: rays that are rarely guided have rare
-    /// bright paths.
+    /// probes propose. The noise of a pixel is about in proportion to its light, so that the
+    /// picture's falls fastest for the same cost where each gets flights in that proportion; fewer
+    /// where an unguided flight gathers all the light as well, as in a cloud, or where the noise is
+    /// that of surfaces. But each ray gets one at least, or the part of one that the scale allows,
+    /// as it does from probes alone: rays that are rarely guided have rare bright paths.
     pub(super) fn new(
         strategy: &Strategy,
         distance_pdf: Option<&DistancePdf>,

@@ -27,8 +27,8 @@ use crate::{
 /// Shadow rays stop short of their light by this share, so that they don't meet the light itself.
 const SHORT_OF_LIGHT: f32 = 1.0 - 1e-4;
 
-/// Holds what MIS needs of the vertex that a ray left: its light samples, and the density of the ray's
-/// direction.
+/// Holds what MIS needs of the vertex that a ray left: its light samples, and the density of the
+/// ray's direction.
 #[derive(Clone, Copy, Debug)]
 pub struct PrevVertex {
     /// Receiver that light samples at the vertex are drawn for.

@@ -36,8 +36,8 @@ enum EstimatorKind {
 }
 
 impl EmissionEstimator {
-    /// The walk that `strategy` asks for. `fitted` is k of the optimal majorant, as measured for the
-    /// picture; it matters only where [`EmissionEstimator::is_fitted`].
+    /// The walk that `strategy` asks for. `fitted` is k of the optimal majorant, as measured for
+    /// the picture; it matters only where [`EmissionEstimator::is_fitted`].
     pub fn new(strategy: &Strategy, fitted: f32) -> Self {
         let advanced = &strategy.advanced;
         let amount = advanced.boost_amount;

@@ -1,6 +1,6 @@
 //! A scene framed on a film, prepared in two stages: [`Frame::new`] places the probes and fits the
-//! optimal majorant; the pilot pass, before the second sample of a pixel, finds the number of guided
-//! flights that pays.
+//! optimal majorant; the pilot pass, before the second sample of a pixel, finds the number of
+//! guided flights that pays.
 
 use std::sync::Arc;
 

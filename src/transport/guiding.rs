@@ -41,8 +41,8 @@ pub(super) fn light_choice(scene: &Scene, context: &PathContext, vertex: &Vertex
     }
 }
 
-/// Draws p_select of ray number `scatters` of a path, if anything guides it, and the point of a light
-/// that guides the ray. `light_point` is the one that was sampled at the vertex before; it is
+/// Draws p_select of ray number `scatters` of a path, if anything guides it, and the point of a
+/// light that guides the ray. `light_point` is the one that was sampled at the vertex before; it is
 /// returned unless the ray is a camera ray, for which one is drawn here.
 pub(super) fn draw_guide(
     scene: &Scene,
@@ -100,8 +100,8 @@ pub(super) fn direction(
     }
 }
 
-/// Mixture of guided directions at a vertex; `light_point` is the sampled point of a light, if it has
-/// one.
+/// Mixture of guided directions at a vertex; `light_point` is the sampled point of a light, if it
+/// has one.
 fn mixture(
     advanced: &Advanced,
     probes: &Probes,

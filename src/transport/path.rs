@@ -14,13 +14,13 @@
 //! twice. Every combination of toggles has the same mean. A marched ray stands for both walks,
 //! biased.
 //!
-//! A camera ray may have several guided flights, and a vertex may be left several times. Each branch
-//! but the last is followed to its end at once, then `State` is restored.
+//! A camera ray may have several guided flights, and a vertex may be left several times. Each
+//! branch but the last is followed to its end at once, then `State` is restored.
 //!
 //! The talk's ideas in this code: emission at every collision in [`super::tracking::scattering`],
-//! emission ratio tracking in [`super::emission::ratio`], the majorant boost in
-//! [`super::emission`] (its modes) and `tracking::majorant` (clamped, literal), fires as lights in [`super::direct`], probe MIS in `distance` and
-//! [`super::probes`]; the number of samples of each in `counts`.
+//! emission ratio tracking in [`super::emission::ratio`], the majorant boost in [`super::emission`]
+//! (its modes) and `tracking::majorant` (clamped, literal), fires as lights in [`super::direct`],
+//! probe MIS in `distance` and [`super::probes`]; the number of samples of each in `counts`.
 
 mod state;
 
@@ -74,8 +74,8 @@ struct Path<'s> {
 }
 
 impl Path<'_> {
-    /// Follows one ray: gathers its emission and what lies at its end, and scatters at the vertex on
-    /// it. Returns false when the path is over.
+    /// Follows one ray: gathers its emission and what lies at its end, and scatters at the vertex
+    /// on it. Returns false when the path is over.
     fn advance(&mut self, rng: &mut PathRng, observer: &mut impl Observer) -> bool {
         let (scene, ray, throughput) = (self.scene, self.state.ray, self.state.throughput);
         let end = surface::intersect(&scene.surfaces, &ray);

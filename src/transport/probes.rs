@@ -3,9 +3,9 @@
 //!
 //! Probes fill the leaves of an octree that is finer where more light is scattered, so that each
 //! probe stands for about the same amount of scattered light. A probe keeps the directions that its
-//! light comes from instead of the talk's score for one camera: the score towards any ray is computed
-//! from them, μ_s ∫ L ρ dω, and weighted by the transmittance along the ray. So probes serve every
-//! vertex, and stay valid when the camera moves.
+//! light comes from instead of the talk's score for one camera: the score towards any ray is
+//! computed from them, μ_s ∫ L ρ dω, and weighted by the transmittance along the ray. So probes
+//! serve every vertex, and stay valid when the camera moves.
 //!
 //! Probes only guide: whatever they estimate, the picture's mean is unchanged, as long as no sample
 //! changes the density that guides it.

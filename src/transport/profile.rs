@@ -66,8 +66,8 @@ pub struct ProfileRow {
 }
 
 impl Profile {
-    /// Tabulates `count` rows, two at least, along a ray from the camera of `frame`; `None` where it
-    /// meets no medium.
+    /// Tabulates `count` rows, two at least, along a ray from the camera of `frame`; `None` where
+    /// it meets no medium.
     ///
     /// T is integrated by the midpoint rule. The weights are those of the expected densities, as
     /// they would be were the transmittance known; a path has those of its own null collisions,

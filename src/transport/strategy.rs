@@ -63,10 +63,10 @@ pub struct Advanced {
     /// ray; `point` evaluates one point, which is cheaper and noisier. Unbounded glowing fog always
     /// uses `line`.
     pub nee_evaluation: NeeEvaluation,
-    /// How next-event estimation selects a light. `hierarchy` (a light tree) prefers bright and near
-    /// lights; `uniform` selects every light with the same probability; `probes` prefers lights
-    /// that probes in the smoke see as bright, which takes longer to prepare, also with the toggle
-    /// off. Where nothing scatters there are no probes, and `hierarchy` is used.
+    /// How next-event estimation selects a light. `hierarchy` (a light tree) prefers bright and
+    /// near lights; `uniform` selects every light with the same probability; `probes` prefers
+    /// lights that probes in the smoke see as bright, which takes longer to prepare, also with the
+    /// toggle off. Where nothing scatters there are no probes, and `hierarchy` is used.
     pub light_selection: LightSelection,
     /// With the probes on: how the distance to the first scattering event of a camera ray is
     /// sampled. `mis` combines probe guiding and null-collision sampling by MIS, so that it is good
@@ -291,8 +291,8 @@ impl Strategy {
         None
     }
 
-    /// Whether a pilot pass decides the number of guided flights; only where null-collision sampling
-    /// is an alternative.
+    /// Whether a pilot pass decides the number of guided flights; only where null-collision
+    /// sampling is an alternative.
     pub fn learns_share(&self) -> bool {
         self.guides() && self.advanced.share_learning && self.advanced.distance == Distance::Mis
     }

@@ -4,8 +4,8 @@
 //!
 //! Guides draw from mixtures, and each draw adds to the spread of a path's weight; the window
 //! reduces it before it compounds. The expected contribution of a path comes from the probes, fixed
-//! before the path. The picture is unbiased whatever they estimate: the number of branches times their
-//! factor is 1 on average.
+//! before the path. The picture is unbiased whatever they estimate: the number of branches times
+//! their factor is 1 on average.
 
 use crate::math::PathRng;
 
@@ -28,9 +28,9 @@ pub(super) struct Splitting {
 }
 
 impl Splitting {
-    /// Draws the splitting of a path of `value`. A path of small value ends by roulette only if it is
-    /// dim as well: `brightness` is its throughput relative to one worth keeping. In white media most
-    /// paths are long and bright, and the probes estimate their contribution only roughly.
+    /// Draws the splitting of a path of `value`. A path of small value ends by roulette only if it
+    /// is dim as well: `brightness` is its throughput relative to one worth keeping. In white media
+    /// most paths are long and bright, and the probes estimate their contribution only roughly.
     pub(super) fn draw(value: f32, brightness: f32, may_split: bool, rng: &mut PathRng) -> Self {
         if value > WINDOW[1] && may_split {
             let wanted = value.min(MOST_SPLITS);

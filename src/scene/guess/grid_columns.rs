@@ -1,5 +1,5 @@
-//! Integrals of a grid's values along parallel lines through it (its columns), for its thickness and
-//! brightness as seen from outside, and the bounds of the part that is seen.
+//! Integrals of a grid's values along parallel lines through it (its columns), for its thickness
+//! and brightness as seen from outside, and the bounds of the part that is seen.
 
 use glam::Vec3A;
 

@@ -1,5 +1,5 @@
-//! The pilot pass, which measures before the second sample of a pixel how many guided flights pay in
-//! a picture.
+//! The pilot pass, which measures before the second sample of a pixel how many guided flights pay
+//! in a picture.
 //!
 //! Probes cost time along every ray, and each guided flight is a path. Inside of smoke with a lamp
 //! in it they lower the noise a hundred times; a cloud under an even sky, or fire that hardly

@@ -1,5 +1,5 @@
-//! The fraction of the lights' power that the medium scatters, which decides how many directions are
-//! drawn towards airlight.
+//! The fraction of the lights' power that the medium scatters, which decides how many directions
+//! are drawn towards airlight.
 
 use std::f32::consts::TAU;
 

@@ -1,5 +1,5 @@
-//! The light of a film after one bounce, estimated from the probes: the mean radiance that the medium
-//! scatters, and its fraction beside what surfaces reflect.
+//! The light of a film after one bounce, estimated from the probes: the mean radiance that the
+//! medium scatters, and its fraction beside what surfaces reflect.
 
 use glam::{UVec2, Vec2};
 
@@ -21,8 +21,8 @@ const SIDE: u32 = 24;
 pub struct Brightness {
     /// Mean radiance that the medium scatters into a camera ray.
     pub scattered: f32,
-    /// Fraction, 0 to 1, of the light after one bounce that the medium scatters; surfaces reflect the
-    /// rest, and guiding does not help it.
+    /// Fraction, 0 to 1, of the light after one bounce that the medium scatters; surfaces reflect
+    /// the rest, and guiding does not help it.
     pub volume_fraction: f32,
 }
 

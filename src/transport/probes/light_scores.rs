@@ -14,8 +14,8 @@ const SHADOW_RAYS: u32 = 32;
 /// Most random points that are tried for the start of a shadow ray, until one of them scatters.
 const TRIES: u32 = 3;
 
-/// LightScores of the lights around `bounds`, for the probe of a node; `None` where no light is visible.
-/// The lights are chosen by the hierarchy, evenly spread over its choices.
+/// LightScores of the lights around `bounds`, for the probe of a node; `None` where no light is
+/// visible. The lights are chosen by the hierarchy, evenly spread over its choices.
 pub(super) fn light_scores(scene: &Scene, node: u32, bounds: &Aabb) -> Option<LightScores> {
     let mut rng = PathRng::new(super::stages::SEED, UVec2::new(node, 1), 1);
     let offset = f64::from(rng.uniform());

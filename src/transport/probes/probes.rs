@@ -24,8 +24,8 @@ pub struct Probes {
     pub(super) octree: Octree,
     /// Probes by node; inner nodes keep the probe from before they were cut.
     pub(super) probes: Vec<Probe>,
-    /// LightScores of the lights, by node, at leaves from which any light is visible; empty if lights
-    /// are not chosen by probes.
+    /// LightScores of the lights, by node, at leaves from which any light is visible; empty if
+    /// lights are not chosen by probes.
     pub(super) light_scores: Vec<Option<LightScores>>,
     /// Caustics: light that specular surfaces reflect into the medium.
     pub(super) caustic_lobes: CausticLobes,
