@@ -45,7 +45,8 @@ pub(crate) fn replace(path: &Path, write: impl FnOnce(&mut File) -> Result<()>) 
 /// make. Of a pipe or a device that is known only when it is written.
 ///
 /// # Errors
-/// Where the folder takes no new files, or something else than a file is in the way; names the file.
+/// Where the folder takes no new files, or something else than a file is in the way; names the
+/// file.
 pub(crate) fn check_writable(path: &Path) -> Result<()> {
     match Target::of(path)? {
         Target::File(place) => temporary(path, &place).map(drop),

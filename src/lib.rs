@@ -4,8 +4,9 @@
 //!
 //! # Rooms
 //!
-//! Each room imports from rooms above it in this table only, and `tests/rooms` checks that; the
-//! core depends neither on the scene file nor on the window.
+//! Each room imports from rooms above it in this table only, and `tests/rooms` checks that. The
+//! core, which is every room above [`scene`] in the table, depends neither on the scene file nor on
+//! the window, but for [`transport::strategy`], which is also the scene file's `[strategy]` table.
 //!
 //! | room | contents |
 //! |---|---|
@@ -16,8 +17,8 @@
 //! | [`sampling`] | samplers with their densities, MIS weights |
 //! | [`surface`], [`volume`] | shapes with their BSDFs; participating media |
 //! | [`light`] | lights, and the choice of one among many |
-//! | [`transport`] | light transport: read [`transport::path`] first, then [`transport::tracking`] |
-//! | [`render`] | film, schedule, threads that sample, pictures for the window, two renders compared |
+//! | [`transport`] | light transport: [`transport::path`] first, then [`transport::tracking`] |
+//! | [`render`] | film, schedule, sampling threads, pictures for the window, renders compared |
 //! | [`image`] | EXR, PNG, NPY, tone mapping, maps and plots, references, error metrics |
 //! | [`scene`] | scene files: the one settings struct, its keys, parsing, saving, assembling |
 //! | `app` | the window (feature `gui`): one file a panel, commands in one enum, one theme |
@@ -25,7 +26,8 @@
 //!
 //! # A picture
 //!
-//! Text becomes settings, settings a scene, a frame of it a film:
+//! Text becomes settings, and settings become a scene. A frame is the scene prepared for a size of
+//! picture; its samples fill a film:
 //!
 //! ```
 //! use std::{path::Path, sync::{Arc, atomic::AtomicBool}};

@@ -7,8 +7,9 @@ use std::time::{Duration, Instant};
 use super::exit::Exit;
 use crate::error::{Error, Result};
 
-/// Signals this soon after the first are the same request: `timeout` sends its signal to the program
-/// and to its group, one right after the other. Nobody presses Ctrl-C again as soon as that.
+/// Signals this soon after the first are the same request: `timeout` sends its signal to the
+/// program and to its group, one right after the other. Nobody presses Ctrl-C again as soon as
+/// that.
 const ONE_REQUEST: Duration = Duration::from_millis(250);
 
 /// A flag that Ctrl-C sets, and so does a polite request to end, as render farms and terminals

@@ -57,8 +57,8 @@ enum Command {
     /// Try every strategy on a scene for a few seconds each, and rank them.
     ///
     /// Says which to leave on, what each toggle brings alone and what is lost without it. The finer
-    /// choices of --set hold for all. Unless --size is given, the film is small enough to be measured
-    /// in seconds.
+    /// choices of --set hold for all. Unless --size is given, the film is small enough to be
+    /// measured in seconds.
     Sweep(Box<sweep::Arguments>),
     /// Print every key of the scene file: type, unit, default, range, help.
     Keys(keys::Arguments),

@@ -112,7 +112,7 @@ fn summary(sample: &PathSample) -> String {
     let _ = writeln!(text, "{:>11} {}", "alpha", sample.alpha);
     let _ = writeln!(text, "{:>11} {depth}", "depth");
     let _ = writeln!(text, "{:>11} {}", "steps", sample.tracking_steps);
-    if sample.guard_hit {
+    if sample.was_cut {
         let _ = writeln!(text, "            the path was cut by the guard");
     }
     text

@@ -54,8 +54,8 @@ fn places() -> Vec<PathBuf> {
     std::env::current_dir().into_iter().chain([std::env::temp_dir()]).collect()
 }
 
-/// Writes to a name of its own, which `fresh` makes in a folder, in the first of `places` that takes
-/// it; returns what is to be said about it.
+/// Writes to a name of its own, which `fresh` makes in a folder, in the first of `places` that
+/// takes it; returns what is to be said about it.
 fn rescued(
     error: &Error,
     places: &[PathBuf],

@@ -15,8 +15,8 @@ pub(crate) struct Identity {
 }
 
 impl Identity {
-    /// Follows `path` to what is read from it, or written to it; `None` for pipes and devices, which
-    /// have nothing that could be lost.
+    /// Follows `path` to what is read from it, or written to it; `None` for pipes and devices,
+    /// which have nothing that could be lost.
     pub(crate) fn of(path: &Path) -> Option<Self> {
         let place = match Target::of(path) {
             Ok(Target::File(place)) => place,

@@ -20,8 +20,8 @@ pub type Pixels = (UVec2, Vec<[f32; 4]>);
 const MAX_PIXELS: u64 = 1 << 28;
 
 /// Reads R, G and B of the first layer that has all of them, as floats with an opaque alpha: the
-/// beauty of a snapshot; elsewhere, within the first part that has one, the layer without a name, or
-/// else the one that comes first.
+/// beauty of a snapshot; elsewhere, within the first part that has one, the layer without a name,
+/// or else the one that comes first.
 ///
 /// # Errors
 /// When the file cannot be read, is no EXR, is damaged, or has no such layer.

@@ -1,7 +1,7 @@
 //! Header of a snapshot: the attributes of its EXR file, in one list for writing and reading.
 //!
-//! Names are plain where scenes' documentation promises them to other programs, and begin with
-//! `flambeau.` where they only serve to go on. The version stands in `software` as
+//! Names that the documentation promises to other programs are plain; those that only serve to
+//! continue a render begin with `flambeau.`. The version stands in `software` as
 //! `Flambeau 1.2.3`: OpenEXR reserves `version` for a number, so that readers lose or refuse a text
 //! of that name.
 
@@ -18,7 +18,8 @@ use crate::render::film::{Film, Totals};
 /// Header of a snapshot: how its picture was rendered.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SnapshotHeader {
-    /// The whole setting as a scene file, with absolute file names.
+    /// All settings as a scene file, with absolute file names. `strategy` and `seed` repeat parts
+    /// of it for other programs.
     pub scene: String,
     /// The sampling strategy as TOML.
     pub strategy: String,

@@ -13,42 +13,21 @@ const STATE_WORDS: usize = size_of::<Sums>() / size_of::<f32>();
 /// `depth.Z` where no sample met anything: far behind everything, and harmless in sums.
 pub const NO_DEPTH: f32 = 1.0e10;
 
-/// Channels for looking at, in the order of [`view_values`].
-const VIEW: [&str; 22] = [
-    "R",
-    "G",
-    "B",
-    "A",
-    "emission.R",
-    "emission.G",
-    "emission.B",
-    "background.R",
-    "background.G",
-    "background.B",
-    "direct.R",
-    "direct.G",
-    "direct.B",
-    "indirect.R",
-    "indirect.G",
-    "indirect.B",
-    "variance.R",
-    "variance.G",
-    "variance.B",
-    "samples",
-    "depth.Z",
-    "steps",
-];
+/// Number of channels for looking at.
+const VIEW_CHANNELS: usize = 22;
 
 /// The channel of a pixel's own sample count.
 pub const SAMPLES: &str = "samples";
 
 /// All channel names: first those for viewing, then those needed to resume.
 pub fn channel_names() -> Vec<String> {
-    VIEW.iter().map(|name| (*name).to_owned()).chain(state_names()).collect()
+    let view = view_channels(None, 0).map(|(name, _)| name.to_owned());
+    view.into_iter().chain(state_names()).collect()
 }
 
 /// Names of the channels that hold the running sums, in the order of the words of [`Sums`]: each
-/// sum with its remainder, and the count of depths.
+/// sum with its remainder, and the count of depths. Whoever moves a field of [`Sums`] moves its
+/// name here.
 pub fn state_names() -> Vec<String> {
     let mut names = Vec::with_capacity(STATE_WORDS);
     let mut pair = |layer: &str, channel: &str| {
@@ -74,8 +53,11 @@ pub fn state_names() -> Vec<String> {
 
 /// Appends the value of every channel at `pixel` to its plane.
 pub fn push_pixel(film: &Film, pixel: UVec2, planes: &mut [Vec<f32>]) {
-    let (view, state) = planes.split_at_mut(VIEW.len());
-    std::iter::zip(view, view_values(film, pixel)).for_each(|(plane, value)| plane.push(value));
+    let (view, state) = planes.split_at_mut(VIEW_CHANNELS);
+    // A pixel without samples shows its block, as on the screen; its count tells.
+    let shown = PixelEstimate::of(film, shown_pixel(film, pixel));
+    let values = view_channels(shown.as_ref(), film.samples(pixel));
+    std::iter::zip(view, values).for_each(|(plane, (_, value))| plane.push(value));
     let zero = bytemuck::Zeroable::zeroed();
     let sums = film.sums(pixel).unwrap_or(&zero);
     let words: &[f32] = bytemuck::cast_slice(std::slice::from_ref(sums));
@@ -84,30 +66,47 @@ pub fn push_pixel(film: &Film, pixel: UVec2, planes: &mut [Vec<f32>]) {
     std::iter::zip(state, words).for_each(|(plane, value)| plane.push(value));
 }
 
-/// A pixel without samples shows its block, as on the screen; its count tells.
-fn view_values(film: &Film, pixel: UVec2) -> [f32; VIEW.len()] {
-    let mut values = [0.0; VIEW.len()];
-    let Some(estimate) = PixelEstimate::of(film, shown_pixel(film, pixel)) else {
-        return values;
+/// The channels for looking at, by name, each with its value in a pixel that has these `samples`
+/// and shows this estimate; 0 without one.
+fn view_channels(
+    shown: Option<&PixelEstimate<'_>>,
+    samples: u32,
+) -> [(&'static str, f32); VIEW_CHANNELS] {
+    let rgb = |read: &dyn Fn(&PixelEstimate<'_>) -> [f64; 3]| {
+        shown.map_or([0.0; 3], |estimate| read(estimate).map(|value| value as f32))
     };
-    let rgb = [
-        estimate.mean(),
-        estimate.part(|sums| &sums.emission),
-        estimate.part(|sums| &sums.background),
-        estimate.part(|sums| &sums.direct),
-        estimate.part(|sums| &sums.indirect),
-        // Unknown below two samples, which is not the same as none.
-        estimate.variance().unwrap_or([f64::INFINITY; 3]),
-    ];
-    let places = [0, 4, 7, 10, 13, 16];
-    for (place, color) in std::iter::zip(places, rgb) {
-        (0..3).for_each(|c| values[place + c] = color[c] as f32);
-    }
-    values[3] = estimate.alpha() as f32;
-    values[19] = film.samples(pixel) as f32;
-    values[20] = estimate.depth().map_or(NO_DEPTH, |depth| depth as f32);
-    values[21] = estimate.steps() as f32;
-    values
+    let value = |read: &dyn Fn(&PixelEstimate<'_>) -> f32| shown.map_or(0.0, read);
+    let beauty = rgb(&|estimate| estimate.mean());
+    let emission = rgb(&|estimate| estimate.part(|sums| &sums.emission));
+    let background = rgb(&|estimate| estimate.part(|sums| &sums.background));
+    let direct = rgb(&|estimate| estimate.part(|sums| &sums.direct));
+    let indirect = rgb(&|estimate| estimate.part(|sums| &sums.indirect));
+    // Unknown below two samples, which is not the same as none.
+    let variance = rgb(&|estimate| estimate.variance().unwrap_or([f64::INFINITY; 3]));
+    [
+        ("R", beauty[0]),
+        ("G", beauty[1]),
+        ("B", beauty[2]),
+        ("A", value(&|estimate| estimate.alpha() as f32)),
+        ("emission.R", emission[0]),
+        ("emission.G", emission[1]),
+        ("emission.B", emission[2]),
+        ("background.R", background[0]),
+        ("background.G", background[1]),
+        ("background.B", background[2]),
+        ("direct.R", direct[0]),
+        ("direct.G", direct[1]),
+        ("direct.B", direct[2]),
+        ("indirect.R", indirect[0]),
+        ("indirect.G", indirect[1]),
+        ("indirect.B", indirect[2]),
+        ("variance.R", variance[0]),
+        ("variance.G", variance[1]),
+        ("variance.B", variance[2]),
+        (SAMPLES, samples as f32),
+        ("depth.Z", value(&|estimate| estimate.depth().map_or(NO_DEPTH, |depth| depth as f32))),
+        ("steps", value(&|estimate| estimate.steps() as f32)),
+    ]
 }
 
 /// The count and the sums of a pixel from its `samples` and `state.*` channels; none if they
@@ -166,7 +165,6 @@ mod tests {
         let names = channel_names();
         let unique: std::collections::HashSet<_> = names.iter().collect();
         assert_eq!(unique.len(), names.len());
-        assert_eq!(VIEW[19], SAMPLES);
     }
 
     #[test]

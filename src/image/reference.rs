@@ -25,9 +25,9 @@ impl Reference {
     /// their first bytes.
     ///
     /// Of an EXR it takes R, G and B of the first layer that has them. An array is of float32 or
-    /// float64 and of shape height × width (gray), height × width × 3 or, with an alpha that is left
-    /// out, height × width × 4, row 0 on top, as `flambeau render -o out.npy` and `numpy.save` write
-    /// it.
+    /// float64 and of shape height × width (gray), height × width × 3 or, with an alpha that is
+    /// left out, height × width × 4, row 0 on top, as `flambeau render -o out.npy` and `numpy.save`
+    /// write it.
     ///
     /// # Errors
     /// When the file cannot be read, is of another kind, is damaged, or holds a pixel that is not

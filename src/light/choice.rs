@@ -1,7 +1,7 @@
 //! The choice of one light among many.
 
 use super::kinds::Light;
-use super::scores::LightProbabilities;
+use super::light_scores::LightProbabilities;
 
 /// The lights that take part in the choice, and the method of choosing one.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,7 +6,7 @@ use glam::Vec3A;
 use super::choice::{By, ChosenLight, LightChoice};
 use super::emitter::{Emitter, Receiver};
 use super::kinds::Light;
-use super::scores::Scores;
+use super::light_scores::LightScores;
 use super::selector::Selector;
 use super::sun::Sun;
 use crate::math::Rgb;
@@ -83,7 +83,7 @@ impl Lights {
     /// direction; a rough value will do.
     pub fn choice_by(
         &self,
-        scores: &Scores,
+        scores: &LightScores,
         to: &Receiver,
         volumes: bool,
         value: impl Fn(Vec3A) -> f32,

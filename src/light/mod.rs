@@ -1,12 +1,13 @@
-//! Lights: what a vertex can sample directly, what a scattered ray meets, and the densities of both.
+//! Lights: those that a vertex samples directly, those that a scattered ray meets, and the
+//! densities of both.
 
 mod choice;
 mod emitter;
 mod kinds;
+mod light_scores;
 mod lights;
 mod local;
 mod sample;
-mod scores;
 mod selector;
 mod sun;
 mod tree;
@@ -14,9 +15,9 @@ mod tree;
 pub use choice::{By, ChosenLight, LightChoice};
 pub use emitter::{Emitter, Receiver};
 pub use kinds::Light;
+pub use light_scores::{LightProbabilities, LightScores, Visibility};
 pub use lights::Lights;
 pub use local::{Point, Spot};
 pub use sample::LightSample;
-pub use scores::{LightProbabilities, Scores, Visibility};
 pub use sun::Sun;
 pub use tree::LightTree;

@@ -13,8 +13,8 @@ use super::{blue_noise, sobol};
 /// other; noise is measured between the randomizations, which don't.
 pub const ACCUMULATORS: usize = 8;
 
-/// Vertices of a branch whose slots are spread evenly. Later ones add up over so many dimensions that there is
-/// nothing left to gain.
+/// Vertices of a branch whose slots are spread evenly. Later ones add up over so many dimensions
+/// that there is nothing left to gain.
 const STRATIFIED_VERTICES: u32 = 4;
 
 /// Use of a random number. Slots that shape the same part of a path share a Sobol sequence; those

@@ -1,8 +1,8 @@
-//! Rectangular regions of pixels.
+//! Rectangles of pixels, such as the window's region.
 
 use glam::UVec2;
 
-/// A rectangular region of pixels.
+/// A rectangle of pixels, such as the window's region.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Area {
     /// First pixel, in the upper left corner.

@@ -66,8 +66,8 @@ impl<'a> PixelEstimate<'a> {
     /// accumulators have equally many samples, so that sums of it over pixels are good to have; of
     /// one pixel it may be negative. None below two filled accumulators.
     ///
-    /// Of K independent values with the k-statistics k₂ and k₄, (2 K k₂² + (K − 1) k₄) / (K (K + 1))
-    /// is unbiased for the variance of k₂ whatever their distribution (Kendall and Stuart, *The
+    /// Of K independent values with the k-statistics k₂ and k₄,
+    /// (2 K k₂² + (K − 1) k₄) / (K (K + 1)) is unbiased for the variance of k₂ whatever their distribution (Kendall and Stuart, *The
     /// Advanced Theory of Statistics*, vol. 1, ch. 12). For normal ones k₄ vanishes on average,
     /// which is assumed below four of them. Where one value alone saw any light it is k₂², the
     /// variance of a count of rare events.

@@ -28,27 +28,29 @@ const LARGEST_VALUE: f32 = 1.0e30;
 /// The most pixels of a film, so that sizes in bytes stay far from overflow.
 const MAX_PIXELS: u64 = 1 << 28;
 
-/// The running sums of one pixel.
+/// The running sums of one pixel, one for each field of [`PathSample`] under the same name, but for
+/// the beauty. The order of the fields is that of the `state.*` channels of a snapshot, which
+/// `image::exr_layout` names.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct Sums {
-    /// The beauty, one RGB sum for each accumulator.
+    /// Sums of [`PathSample::beauty`], one RGB sum for each accumulator.
     pub beauty: [[TwoFloat; 3]; ACCUMULATORS],
-    /// Volume emission seen on camera segments.
+    /// Sum of [`PathSample::emission`].
     pub emission: [TwoFloat; 3],
-    /// Environment and emitters seen directly.
+    /// Sum of [`PathSample::background`].
     pub background: [TwoFloat; 3],
-    /// Light after one scatter or reflection.
+    /// Sum of [`PathSample::direct`].
     pub direct: [TwoFloat; 3],
-    /// Light after more than one scatter or reflection.
+    /// Sum of [`PathSample::indirect`].
     pub indirect: [TwoFloat; 3],
-    /// Alpha: one minus the transmittance to the background.
+    /// Sum of [`PathSample::alpha`].
     pub alpha: TwoFloat,
-    /// Distances of the first events or surfaces.
+    /// Sum of [`PathSample::depth`] over the samples that have one.
     pub depth: TwoFloat,
-    /// Tentative collisions of all walks, those of failed samples included.
+    /// Sum of [`PathSample::tracking_steps`], those of failed samples included.
     pub steps: TwoFloat,
-    /// Number of samples with a distance.
+    /// Number of samples that have a depth.
     pub depth_count: u32,
 }
 
@@ -61,7 +63,7 @@ pub struct Totals {
     pub tracking_steps: u64,
     /// Samples that were not finite; each counts as a sample of value zero.
     pub non_finite: u64,
-    /// Paths cut by the guard against endless scattering.
+    /// Paths that were cut, see [`PathSample::was_cut`].
     pub guard_hits: u64,
 }
 
@@ -153,7 +155,7 @@ impl Film {
         self.totals = self.totals.plus(totals);
     }
 
-    /// Puts back what was once read from this film or another of its size.
+    /// Puts back the samples of a pixel that were once read from this film or another of its size.
     pub fn restore(&mut self, pixel: UVec2, samples: u32, sums: &Sums) {
         let index = self.index(pixel);
         self.counts[index] = samples;
@@ -173,7 +175,7 @@ impl Film {
         range
     }
 
-    /// Fewest samples of a pixel of `area`; none of them lies on the film: 0.
+    /// Fewest samples of a pixel of `area`; 0 where none of its pixels lies on the film.
     pub fn fewest_samples(&self, area: Area) -> u32 {
         let pixels = area.within(self.size).iter();
         pixels.map(|pixel| self.samples(pixel)).min().unwrap_or(0)
@@ -229,8 +231,7 @@ pub(crate) fn add_sample(count: &mut u32, sums: &mut Sums, sample: &PathSample) 
     sums.steps.add(sample.tracking_steps as f32);
     let usable = is_usable(sample);
     if usable {
-        let beauty = sample.emission + sample.background + sample.direct + sample.indirect;
-        add_rgb(&mut sums.beauty[accumulator], beauty);
+        add_rgb(&mut sums.beauty[accumulator], sample.beauty());
         add_rgb(&mut sums.emission, sample.emission);
         add_rgb(&mut sums.background, sample.background);
         add_rgb(&mut sums.direct, sample.direct);
@@ -245,7 +246,7 @@ pub(crate) fn add_sample(count: &mut u32, sums: &mut Sums, sample: &PathSample) 
         paths: 1,
         tracking_steps: u64::from(sample.tracking_steps),
         non_finite: u64::from(!usable),
-        guard_hits: u64::from(sample.guard_hit),
+        guard_hits: u64::from(sample.was_cut),
     }
 }
 
@@ -313,7 +314,7 @@ mod tests {
         }
         film.add(UVec2::ZERO, &PathSample { depth: Some(f32::NAN), ..gray(1.0) });
         film.add(UVec2::ZERO, &PathSample { alpha: f32::NAN, tracking_steps: 5, ..gray(1.0) });
-        film.add(UVec2::ZERO, &PathSample { tracking_steps: 7, guard_hit: true, ..gray(3.0) });
+        film.add(UVec2::ZERO, &PathSample { tracking_steps: 7, was_cut: true, ..gray(3.0) });
         let sums = film.sums(UVec2::ZERO).unwrap();
         assert_eq!((sums.direct[0].value(), sums.depth_count), (3.0, 1));
         assert_eq!(sums.steps.value(), 12.0, "what a failed sample cost was spent all the same");

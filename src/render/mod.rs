@@ -8,10 +8,11 @@
 //! - [`pool`]: the threads, which do one piece of work; `thread_time`: their CPU time.
 //! - [`progressive`]: one render, piece by piece; driven by [`session`] in the window and by
 //!   [`headless`] on the command line.
-//! - [`turns`]: which of several renders gets the next time slice; [`time_slice`]: one of them with
-//!   its share of the work.
-//! - [`side_by_side`]: two renders at equal shares; [`compare`]: their speed-up and agreement;
-//!   [`sweep`]: all toggles of the strategy, alone and left out.
+//! - [`turns`]: the rule by which several renders take turns on one machine; [`time_slice`]:
+//!   renders without a window that take turns by it; [`side_by_side`]: two of them. In the window,
+//!   sessions take turns by the same rule, through tokens (`session::sharing`).
+//! - [`compare`]: speed-up and agreement of two renders; [`sweep`]: all toggles of the strategy,
+//!   alone and left out, each a render that takes turns.
 
 pub mod area;
 pub mod coarse;

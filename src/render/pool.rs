@@ -121,9 +121,9 @@ impl Pool {
         Err(Failure { at: None, message })
     }
 
-    /// Does `work` on `film`. Without `prepared` only first samples are taken. `stop` is asked before
-    /// every sample; a piece broken off leaves the film consistent, and doing the same work again
-    /// completes it.
+    /// Does `work` on `film`. Without `prepared` only first samples are taken. `stop` is asked
+    /// before every sample; a piece broken off leaves the film consistent, and doing the same work
+    /// again completes it.
     pub fn sample(
         &self,
         film: &mut Film,
@@ -214,7 +214,8 @@ impl RowContext<'_> {
     ) -> Done {
         let (first, width) = row_pixels(self.size, self.tiles, row);
         if !self.has_work(first, width) {
-            // Most rows of a coarse pass: to ask for the time would take longer than all the others.
+            // Most rows of a coarse pass: to ask for the time would take longer than all the
+            // others.
             return Done::nothing();
         }
         let start = thread_seconds();

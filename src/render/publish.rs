@@ -1,4 +1,4 @@
-//! Pictures made from a film for the window to show.
+//! Pictures read from a film.
 
 use glam::UVec2;
 use rayon::prelude::*;
@@ -24,8 +24,8 @@ pub struct Picture {
     pub fewest_samples: u32,
     /// Region that gets all samples, and the samples of its pixel that has fewest.
     pub focus: Option<(Area, u32)>,
-    /// Variance of the gray mean of each pixel, and the variance of that; row 0 on top, NaN below two
-    /// samples; empty unless asked for, and while pixels have no sample.
+    /// Variance of the gray mean of each pixel, and the variance of that; row 0 on top, NaN below
+    /// two samples; empty unless asked for, and while pixels have no sample.
     pub variance: Vec<[f32; 2]>,
     /// Whether every pixel has at least one sample of its own.
     pub complete: bool,
@@ -67,7 +67,7 @@ pub struct RenderStats {
     pub paths: u64,
     /// Samples that were not finite and count as zero.
     pub non_finite: u64,
-    /// Paths cut by the guard against endless scattering.
+    /// Paths that were cut, see [`PathSample::was_cut`](crate::transport::PathSample::was_cut).
     pub guard_hits: u64,
     /// Relative standard error of the picture, see [`FilmStats::noise`]; none before two samples.
     pub noise: Option<f64>,
@@ -118,8 +118,8 @@ fn rgba(estimate: &PixelEstimate<'_>, mean: [f64; 3]) -> [f32; 4] {
     [r, g, b, estimate.alpha() as f32]
 }
 
-/// Reads the variance of the gray mean of every pixel and the variance of that into `variance`, which gets the size of the
-/// film. Runs on the threads of the calling pool.
+/// Reads the variance of the gray mean of every pixel and the variance of that into `variance`,
+/// which gets the size of the film. Runs on the threads of the calling pool.
 pub fn resolve_variance(film: &Film, variance: &mut Vec<[f32; 2]>) {
     let size = film.size();
     variance.resize(size.x as usize * size.y as usize, [f32::NAN; 2]);
@@ -237,7 +237,7 @@ mod tests {
     #[test]
     fn bad_paths_are_in_the_figures() {
         let mut film = Film::new(UVec2::ONE).unwrap();
-        film.add(UVec2::ZERO, &PathSample { guard_hit: true, ..red(1.0) });
+        film.add(UVec2::ZERO, &PathSample { was_cut: true, ..red(1.0) });
         film.add(UVec2::ZERO, &red(f32::NAN));
         let stats = render_stats(&film, 0.0, None, false);
         assert_eq!((stats.paths, stats.guard_hits, stats.non_finite), (2, 1, 1));

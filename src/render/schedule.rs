@@ -1,4 +1,5 @@
-//! The order of samples, and the times at which they are shown: pure logic, no threads and no clocks.
+//! The order of samples, and the times at which they are shown: pure logic, no threads and no
+//! clocks.
 //!
 //! The first pass visits pixels coarse to fine. At stride s each block of s × s pixels is stood for
 //! by the pixel in its middle, sampled at its own position, so nothing is thrown away; the pixels
@@ -113,8 +114,9 @@ impl Schedule {
         }
     }
 
-    /// Gives all samples to the pixels of `area`, some of the film's, which have `passes` samples or
-    /// more, or to all pixels. The first pass goes over the whole film all the same, so that there is a picture.
+    /// Gives all samples to the pixels of `area`, some of the film's, which have `passes` samples
+    /// or more, or to all pixels. The first pass goes over the whole film all the same, so that
+    /// there is a picture.
     pub fn focus(&mut self, area: Option<Area>, passes: u32) {
         self.area = area;
         if self.passes > 0 {

@@ -1,5 +1,9 @@
 //! Rendering behind a window: a thread of its own that takes the latest request, refines it and
 //! hands over pictures. No call here waits for sampling.
+//!
+//! A request is provisional while its sampler still lacks its light probes: it shows a picture at
+//! once, with more noise, and [`Session::improve`] brings the sampler that has them. Samples of
+//! both are never mixed.
 
 mod active;
 mod phase;
@@ -76,9 +80,9 @@ impl Session {
         self.shared.post(|mailbox| mailbox.paused = paused);
     }
 
-    /// Sets what pictures bring along beside their light. It costs a little to read, so it is left out
-    /// unless asked for; asking brings a new picture of what there is, also while paused or
-    /// finished.
+    /// Sets which data pictures bring along beside their light. To read it costs a little, so it is
+    /// left out unless asked for; asking brings a new picture of the samples there are, also while
+    /// paused or finished.
     pub fn set_extras(&self, extras: Extras) {
         self.shared.post(|mailbox| mailbox.extras = extras);
     }
@@ -88,8 +92,9 @@ impl Session {
         self.shared.post(|mailbox| mailbox.turn_token = token);
     }
 
-    /// Gives all samples to the pixels of `area` once every pixel has one, or to all pixels, which
-    /// catch up. Of another film's size, it is what of it lies on that.
+    /// Gives all samples to the pixels of `area` once every pixel has one, or, with `None`, to all
+    /// pixels, of which those outside catch up first. On a film of another size, the part of `area`
+    /// that lies on the film counts.
     pub fn focus(&self, area: Option<Area>) {
         self.shared.post(|mailbox| mailbox.area = area);
     }

@@ -1,5 +1,5 @@
-//! Rendering two settings of one scene without a window, on the same threads in alternating time
-//! slices, so that both have had the same share whenever they are compared.
+//! Rendering two settings of one scene without a window: a pair of renders that take turns, by
+//! `time_slice`.
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -40,8 +40,8 @@ pub struct RenderedPair {
     pub interrupted: bool,
 }
 
-/// Renders both sides until their limits are reached or `interrupt` is set, calling `progress` after
-/// every piece of work (a few times a second). A sample that cannot be taken ends both.
+/// Renders both sides until their limits are reached or `interrupt` is set, calling `progress`
+/// after every piece of work (a few times a second). A sample that cannot be taken ends both.
 ///
 /// # Errors
 /// When the films do not fit the memory or threads cannot be started.

@@ -1,13 +1,13 @@
-//! Every toggle tried alone and left out, for a few seconds each: which strategy to leave on for a
-//! shot, what each toggle alone brings to it, and what is lost without it.
+//! A sweep renders every toggle alone and left out, for a few seconds each. It finds the strategy
+//! to leave on for a shot, the gain of each toggle alone, and the loss without it.
 //!
 //! [`plan()`] lists the trials, [`sweep`] renders them in time slices on the same threads,
 //! [`Ranking`] compares them pairwise as a comparison of two does, and [`words`] puts the result
 //! into sentences.
 //!
 //! Noise is measured on a film of few pixels: the mean variance of a pixel and the cost of a path
-//! depend on the shot and hardly on how finely it is cut, and a few seconds then bring each pixel
-//! the samples that its variance is known from.
+//! depend on the shot and hardly on the number of pixels. So a few seconds bring each pixel enough
+//! samples to estimate its variance from.
 
 mod plan;
 mod ranking;
@@ -32,7 +32,7 @@ use crate::transport::probes::Probes;
 use crate::transport::strategy::Strategy;
 use crate::transport::{Frame, PixelSampler, PreparedFrame, Scene, prepare};
 
-/// CPU seconds of each strategy where nobody says how many.
+/// Default CPU seconds of each strategy.
 pub const DEFAULT_SECONDS: f64 = 3.0;
 
 /// Most pixels of a film whose size is not set.
@@ -47,7 +47,7 @@ pub fn quick_size(size: UVec2) -> UVec2 {
 
 /// A sweep: the scene, its trials and their limits.
 pub struct SweepJob<'a> {
-    /// The scene, under whatever strategy.
+    /// The scene; its own strategy does not matter.
     pub scene: &'a Scene,
     /// The strategies.
     pub trials: &'a [Trial],

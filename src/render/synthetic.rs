@@ -50,7 +50,7 @@ impl PixelSampler for Uniform {
             alpha: value,
             depth: (value < 0.5).then_some(1.0 + value),
             tracking_steps: 3,
-            guard_hit: false,
+            was_cut: false,
         }
     }
 }

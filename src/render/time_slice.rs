@@ -1,5 +1,5 @@
-//! Time slices: several renders of one scene on the same threads, so that all have had the same
-//! share whenever they are compared.
+//! Several renders of one scene that take turns on the same threads, in time slices, so that all
+//! have had the same share whenever they are compared.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -1,4 +1,5 @@
-//! Time slices of renders that share one machine: pure bookkeeping, no threads and no clocks.
+//! The rule by which renders that share one machine take turns: pure bookkeeping, no threads and no
+//! clocks.
 //!
 //! The next piece of work goes to the side that has had least so far. A piece never lasts longer
 //! than the schedule lets it, so sides are never further apart than one piece of one of them.

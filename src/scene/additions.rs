@@ -1,4 +1,5 @@
-//! The things that artists add to a shot most: lights and a floor, placed and measured so that they show.
+//! The things that artists add to a shot most: lights and a floor, placed and measured so that they
+//! show.
 
 use glam::Vec3A;
 

@@ -8,8 +8,8 @@ use super::keys::{self, join};
 use super::schema::{self, NumberBounds, Only};
 use crate::error::{Error, Result};
 
-/// Checks a whole scene; `source` names it in errors.
-pub(super) fn check(scene: &Table, source: &str) -> Result<()> {
+/// Checks the keys of a whole scene and their values; `source` names it in errors.
+pub(super) fn check_keys(scene: &Table, source: &str) -> Result<()> {
     Checker { source }.table(scene, schema::root(), "")
 }
 

@@ -1,9 +1,9 @@
 //! The description of a volume file for people: its grids with their sizes and ranges.
 
+use glam::Vec3A;
 use serde::Serialize;
 
 use super::cache::{GridValues, PlacedGrid, VolumeCache, VolumeFile};
-use super::frame::bounds_in_world;
 use crate::error::{Progress, Result};
 use crate::math::Aabb;
 use crate::volume::grid::Histogram;
@@ -132,6 +132,10 @@ fn voxels(grid: &PlacedGrid) -> VoxelDescription {
 /// The box around a grid's stored voxels, in the file's space.
 pub(super) fn grid_bounds(grid: &PlacedGrid) -> Option<Aabb> {
     let bounds = grid.bounds()?;
-    let world_from_index = grid.world_from_index.as_affine3a();
-    Some(bounds_in_world(bounds.min.as_vec3(), bounds.max.as_vec3(), &world_from_index))
+    let half_voxel = Vec3A::splat(0.5);
+    let in_index = Aabb::new(
+        Vec3A::from(bounds.min.as_vec3()) - half_voxel,
+        Vec3A::from(bounds.max.as_vec3()) + half_voxel,
+    );
+    Some(in_index.transformed(&grid.world_from_index.as_affine3a()))
 }

@@ -14,7 +14,7 @@ const MARCHING: &str =
 /// Reason why `toggle` makes no difference to noise or cost in this scene; `None` where it does.
 pub fn no_effect(toggle: Toggle, settings: &Settings) -> Option<&'static str> {
     let strategy = &settings.strategy;
-    if strategy.is_biased() && toggle != Toggle::FireAsLight {
+    if strategy.marches() && toggle != Toggle::FireAsLight {
         return Some(MARCHING);
     }
     if toggle == Toggle::Probes {

@@ -10,8 +10,8 @@ use crate::files::Fingerprint;
 /// The fingerprint of every file that the scene names, each once, in the scene's order.
 ///
 /// # Errors
-/// A file cannot be read, or there is no such embedded volume; names it. [`Error::Cancelled`](crate::error::Error::Cancelled) where
-/// `progress` says so.
+/// A file cannot be read, or there is no such embedded volume; names it.
+/// [`Error::Cancelled`](crate::error::Error::Cancelled) where `progress` says so.
 pub fn fingerprints(settings: &Settings, progress: Progress) -> Result<Vec<Fingerprint>> {
     let mut found: Vec<Fingerprint> = Vec::new();
     for name in settings.volume.iter().filter_map(|volume| volume.file.as_deref()) {

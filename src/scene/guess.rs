@@ -2,8 +2,8 @@
 //! brightness and camera. Every guess is an ordinary setting, and is reported in a note.
 
 mod emission;
+mod grid_columns;
 mod note;
-mod probe;
 mod roles;
 
 use std::sync::Arc;
@@ -12,7 +12,7 @@ use super::cache::VolumeFile;
 use super::conventions::{Program, upright};
 use super::describe::grid_bounds;
 use super::embedded::short_name;
-use super::frame::frame;
+use super::fit_camera::fit_camera;
 use super::settings::{
     Albedo, Axis, CameraSettings, Color, DensitySettings, LightKind, LightSettings, PhaseSettings,
     Settings, VolumeSettings,
@@ -20,8 +20,8 @@ use super::settings::{
 use crate::error::{Error, Progress, Result};
 use crate::format::two_digits;
 use crate::math::Aabb;
+use grid_columns::{FAIRLY, columns, quantile, visible_bounds};
 pub use note::{About, Note};
-use probe::{FAIRLY, columns, quantile, visible_bounds};
 use roles::Candidate;
 
 /// A scene made up for a bare volume.
@@ -195,7 +195,7 @@ fn default_camera(settings: &Settings, bounds: &Aabb) -> CameraSettings {
         ..CameraSettings::default()
     };
     let [width, height] = settings.film.size;
-    frame(&view, bounds, width as f32 / height as f32)
+    fit_camera(&view, bounds, width as f32 / height as f32)
 }
 
 fn daylight(settings: &mut Settings) {

@@ -1,16 +1,19 @@
 //! Scenes: the one settings struct, its file format, and what is built from it.
 //!
 //! ```text
-//! name --load--> text --parse--> settings --assemble--> transport::Scene
-//!         \----> bare volume --guess--/  \--save--> text
+//! name --load--> text + Overrides --parse--> Settings --assemble--> transport::Scene
+//!         \----> bare volume --------guess------/  \--save--> text
 //! ```
 //!
 //! - `load`, `files`, `embedded`: opening a source by name; [`cache`]: volume files in memory.
-//! - `parse`, `overrides`: TOML text to settings; `save`: settings to text.
-//! - `check`, `rules`: errors in keys and values; `schema`, [`keys`]: the schema and its keys.
+//! - `parse`, `overrides`: TOML text to settings, or, by [`apply`], values of `--set` laid over
+//!   settings later; `save`: settings to text.
+//! - `check`, `rules`: errors in keys and values, for `parse`; `schema`, [`keys`]: the schema and
+//!   its keys.
 //! - [`settings`]: the settings struct; [`effect`]: toggles that change nothing in a scene.
 //! - `assemble`: settings to the scene that is rendered.
-//! - `guess`, `conventions`, `grid_names`, `role`: settings for a bare volume; `frame`: its camera.
+//! - `guess`, `conventions`, `grid_names`, `role`: settings for a bare volume; `fit_camera`: its
+//!   camera.
 //! - `additions`: new lights and floors; `describe`: the contents of a volume file for people.
 //! - `resume`, `fingerprints`: whether a snapshot can be continued, and whether its files changed.
 
@@ -24,7 +27,7 @@ pub mod effect;
 mod embedded;
 mod files;
 mod fingerprints;
-mod frame;
+mod fit_camera;
 mod grid_names;
 mod guess;
 pub mod keys;
@@ -45,7 +48,7 @@ pub use conventions::{Program, upright};
 pub use describe::{FileDescription, GridDescription, VoxelDescription, describe};
 pub use embedded::{DEFAULT_SCENE, scenes as embedded_scenes};
 pub use fingerprints::{fingerprints, volume_files};
-pub use frame::frame;
+pub use fit_camera::fit_camera;
 pub use guess::{About, Note};
 pub use load::{Opened, is_scene, load, open, scene_file};
 pub use overrides::Overrides;

@@ -19,10 +19,10 @@ pub fn parse(text: &str, source: &str, folder: &Path, overrides: &Overrides) -> 
     let mut scene: Table = toml::from_str(text).map_err(|e| syntax(text, source, &e))?;
     expand_preset(&mut scene, source)?;
     spell_brightness_one_way(&mut scene, source)?;
-    check::check(&scene, source)?;
+    check::check_keys(&scene, source)?;
     resolve_files(&mut scene, folder, source)?;
     let settings = from_table(scene, source)?;
-    rules::check(&settings, source)?;
+    rules::check_rules(&settings, source)?;
     apply(&settings, overrides)
 }
 
@@ -38,9 +38,9 @@ pub fn apply(settings: &Settings, overrides: &Overrides) -> Result<Settings> {
     let mut scene = to_table(settings)?;
     overrides.apply(&mut scene)?;
     spell_brightness_one_way(&mut scene, source)?;
-    check::check(&scene, source)?;
+    check::check_keys(&scene, source)?;
     let settings = from_table(scene, source)?;
-    rules::check(&settings, source)?;
+    rules::check_rules(&settings, source)?;
     Ok(settings)
 }
 
@@ -49,8 +49,8 @@ pub fn apply(settings: &Settings, overrides: &Overrides) -> Result<Settings> {
 /// # Errors
 /// As [`parse`].
 pub fn validate(settings: &Settings, source: &str) -> Result<()> {
-    check::check(&to_table(settings)?, source)?;
-    rules::check(settings, source)
+    check::check_keys(&to_table(settings)?, source)?;
+    rules::check_rules(settings, source)
 }
 
 /// The settings without the keys that do not belong to the chosen shapes, types and modes: what is

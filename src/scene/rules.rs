@@ -9,8 +9,8 @@ use super::settings::{
 };
 use crate::error::{Error, Result};
 
-/// Checks a scene whose single values are within their bounds.
-pub(super) fn check(settings: &Settings, source: &str) -> Result<()> {
+/// Checks the rules across values, of a scene whose single values are within their bounds.
+pub(super) fn check_rules(settings: &Settings, source: &str) -> Result<()> {
     let fail = |(field, reason): (String, String)| Error::invalid(source, field, reason);
     let items = |list: &str, index: usize| {
         let prefix = format!("{list}.{index}");

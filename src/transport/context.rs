@@ -14,14 +14,28 @@ pub struct PathContext<'s> {
     pub probes: Option<&'s Probes>,
     /// Mean in-scattered radiance over the film, estimated from the probes.
     pub brightness: Brightness,
-    /// Guided flights of a camera ray, relative to the number that the probes propose; 0 switches
-    /// guiding by probes off.
-    pub flights: f32,
+    /// Scale of the number of guided flights of a camera ray, relative to what the probes propose;
+    /// 0 switches guided flights off.
+    pub flights_scale: f32,
 }
 
 impl<'s> PathContext<'s> {
-    /// Probes that guide scattering distances and directions; `None` where guiding is off.
-    pub(super) fn guides(&self, strategy: &Strategy) -> Option<&'s Probes> {
-        self.probes.filter(|_| self.flights > 0.0 && strategy.guides())
+    /// Probes that guide scattering distances, and the weight window with them; `None` where the
+    /// strategy does not guide, or where the pilot pass found that guided flights gain nothing.
+    pub(super) fn probes_for_distances(&self, strategy: &Strategy) -> Option<&'s Probes> {
+        self.probes_for_directions(strategy).filter(|_| self.flights_scale > 0.0)
+    }
+
+    /// Probes that guide directions at vertices; `None` where the strategy does not guide. The
+    /// pilot pass does not switch them off: caustics are worth guiding to without guided flights as
+    /// well.
+    pub(super) fn probes_for_directions(&self, strategy: &Strategy) -> Option<&'s Probes> {
+        self.probes.filter(|_| strategy.guides())
+    }
+
+    /// Probes that choose lights. Their light scores serve whether or not the strategy guides:
+    /// probes that need not choose lights have none.
+    pub(super) fn probes_for_lights(&self) -> Option<&'s Probes> {
+        self.probes
     }
 }

@@ -1,15 +1,15 @@
-//! Expected number of samples of each technique at a vertex, decided here and nowhere else, before
-//! any direction is drawn.
+//! Decides the expected number of samples of each technique at a vertex, before any direction is
+//! drawn. Nothing else decides it.
 //!
 //! | technique | rule |
 //! |---|---|
-//! | guided flights of a camera ray | in proportion to the radiance scattered into it, times the pilot's share |
+//! | guided flights of a camera ray | as the radiance scattered into it, times the pilot's scale |
 //! | light samples (next-event estimation) | one |
 //! | path continuation, near the camera inside of a medium | the weight window |
 //! | path continuation, elsewhere | Russian roulette on the throughput |
 //!
-//! Unbiased whatever the numbers: splitting and roulette compensate by their factors, guided
-//! flights by their number in the balance heuristic.
+//! The estimate is unbiased whatever the numbers: splitting and roulette compensate by their
+//! factors, guided flights by their number in the balance heuristic.
 
 use super::context::PathContext;
 use super::probes::{Brightness, DistancePdf};
@@ -34,9 +34,10 @@ const MOST_FLIGHTS: f32 = 16.0;
 /// Relative variance of an unguided flight's contribution from which on guided flights pay.
 const MUCH_MISSED: f32 = 1.0;
 
-/// State of a path where the number of its continuations is decided.
+/// The value of a path where the number of its continuations is decided, with the limits of that
+/// number.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Standing {
+pub(super) struct PathValue {
     /// The throughput that arrives at the vertex.
     pub(super) throughput: Rgb,
     /// Scattering events and reflections before the vertex.
@@ -68,11 +69,11 @@ impl Counts {
         strategy: &Strategy,
         vertex: &Vertex,
         forward: glam::Vec3A,
-        path: Standing,
+        path: PathValue,
     ) -> Self {
         let is_known = path.expected > 0.0 && !vertex.is_surface();
         let weighs = is_known && path.scatters < WEIGHED_VERTICES;
-        let probes = context.guides(strategy).filter(|_| weighs);
+        let probes = context.probes_for_distances(strategy).filter(|_| weighs);
         let window = probes.map(|probes| {
             let radiance = probes.radiance_at(vertex.receiver().position, forward);
             let value = mean(path.throughput) * radiance / path.expected;
@@ -114,42 +115,44 @@ impl Counts {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Allocation {
     /// Expected number of guided flights.
-    pub(super) flights: f32,
+    pub(super) mean_flights: f32,
     /// Whether guided flights alone gather the scattered light; otherwise guided and unguided ones
     /// do, by MIS.
     pub(super) alone: bool,
 }
 
 impl Allocation {
-    /// Number of guided flights under the guides of `distance_pdf`. The noise of a pixel is about
-    /// in proportion to its light, so that the picture's falls fastest for the same cost where each
-    /// gets flights in that proportion; fewer where an unguided flight gathers all the light as
-    /// well, as in a cloud, or where the noise is that of surfaces. But each ray gets one at least,
-    /// or its share of one, as it does from probes alone: rays that are rarely guided have rare
-    /// bright paths.
+    /// Number of guided flights under the guides of `distance_pdf`, `flights_scale` times what the
+    /// probes propose. The noise of a pixel is about in proportion to its light, so that the
+    /// picture's falls fastest for the same cost where each gets flights in that proportion; fewer
+    /// where an unguided flight gathers all the light as well, as in a cloud, or where the noise is
+    /// that of surfaces. But each ray gets one at least, or the part of one that the scale allows,
+    /// as it does from probes alone: rays that are rarely guided have rare bright paths.
     pub(super) fn new(
         strategy: &Strategy,
         distance_pdf: Option<&DistancePdf>,
         film: &Brightness,
+        flights_scale: f32,
     ) -> Self {
         let alone = strategy.advanced.distance == Distance::Probes;
-        let Some(distance_pdf) = distance_pdf else { return Self { flights: 1.0, alone } };
-        let least = if alone { 1.0 } else { film.share };
-        let relative = film.share * (distance_pdf.light() / film.scattered);
+        let Some(distance_pdf) = distance_pdf else { return Self { mean_flights: 1.0, alone } };
+        let fraction = film.volume_fraction * flights_scale;
+        let least = if alone { 1.0 } else { fraction };
+        let relative = fraction * (distance_pdf.in_scattered() / film.scattered);
         let wanted = relative * (distance_pdf.missed() / MUCH_MISSED).min(1.0);
-        let flights = match strategy.advanced.scatter_probability {
+        let mean_flights = match strategy.advanced.scatter_probability {
             ScatterProbability::Light if wanted.is_finite() => wanted.clamp(least, MOST_FLIGHTS),
             _ => least,
         };
-        Self { flights, alone }
+        Self { mean_flights, alone }
     }
 
     /// The factor of a scattering event of either kind, whose weight is over `pdf_null`.
     pub(super) fn weight(&self, pdf_null: f32, pdf_guided: f32, is_null: bool) -> f32 {
         match self.alone {
-            false => mis::mixture([1.0, self.flights], [pdf_null, pdf_guided]),
+            false => mis::mixture([1.0, self.mean_flights], [pdf_null, pdf_guided]),
             true if is_null || pdf_guided <= 0.0 => 0.0,
-            true => pdf_null / (pdf_guided * self.flights),
+            true => pdf_null / (pdf_guided * self.mean_flights),
         }
     }
 }

@@ -27,7 +27,8 @@ use crate::{
 /// Shadow rays stop short of their light by this share, so that they don't meet the light itself.
 const SHORT_OF_LIGHT: f32 = 1.0 - 1e-4;
 
-/// The vertex a ray left from and the density over solid angle it was drawn with there.
+/// Holds what MIS needs of the vertex that a ray left: its light samples, and the density of the
+/// ray's direction.
 #[derive(Clone, Copy, Debug)]
 pub struct PrevVertex {
     /// Receiver that light samples at the vertex are drawn for.
@@ -189,7 +190,7 @@ impl<'a> LightDirection<'a> {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NeeSample {
     /// Radiance of the sampled light at the vertex times the vertex's value and the MIS weight.
-    pub light: Rgb,
+    pub contribution: Rgb,
     /// Sampled point of the light; `None` for the sun and where nothing was sampled.
     pub point: Option<Vec3A>,
     /// Tentative collisions along the shadow ray.
@@ -222,7 +223,7 @@ pub fn sample_lights(
         if light_direction.can_be_met() { mis::balance(light_pdf, vertex_pdf) } else { 1.0 };
     let (radiance, collisions) =
         light_direction.radiance_over_pdf(scene, emission_estimator, light_pdf, rng);
-    NeeSample { light: value * weight * radiance, collisions, ..unseen }
+    NeeSample { contribution: value * weight * radiance, collisions, ..unseen }
 }
 
 /// A point of a light, drawn as a light sample at a receiver would be; `None` for the sun.

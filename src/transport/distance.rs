@@ -39,39 +39,40 @@ pub(super) struct DistanceGuide {
     /// Density that the probes along the ray give.
     pub(super) distance_pdf: Option<DistancePdf>,
     /// Equiangular density towards a point of a light.
-    pub(super) light: Option<Equiangular>,
+    pub(super) equiangular: Option<Equiangular>,
 }
 
 impl DistanceGuide {
     /// Combines the two densities with equal shares; `None` without either.
     pub(super) fn new(
         distance_pdf: Option<DistancePdf>,
-        light: Option<Equiangular>,
+        equiangular: Option<Equiangular>,
     ) -> Option<Self> {
-        (distance_pdf.is_some() || light.is_some()).then_some(Self { distance_pdf, light })
+        let guides = distance_pdf.is_some() || equiangular.is_some();
+        guides.then_some(Self { distance_pdf, equiangular })
     }
 
     fn sample(&self, u: f32) -> f32 {
-        match (&self.distance_pdf, &self.light) {
+        match (&self.distance_pdf, &self.equiangular) {
             (Some(distance_pdf), Some(_)) if u < 0.5 => distance_pdf.sample(2.0 * u),
-            (Some(_), Some(light)) => light.sample(2.0 * u - 1.0),
+            (Some(_), Some(equiangular)) => equiangular.sample(2.0 * u - 1.0),
             (Some(distance_pdf), None) => distance_pdf.sample(u),
-            (None, Some(light)) => light.sample(u),
+            (None, Some(equiangular)) => equiangular.sample(u),
             (None, None) => 0.0,
         }
     }
 
     fn pdf(&self, t: f32) -> f32 {
         let distance_pdf = self.distance_pdf.as_ref().map(|distance_pdf| distance_pdf.pdf(t));
-        let light = self.light.as_ref().map(|light| light.pdf(t));
-        pdf_of_both(distance_pdf, light)
+        let equiangular = self.equiangular.as_ref().map(|equiangular| equiangular.pdf(t));
+        pdf_of_both(distance_pdf, equiangular)
     }
 }
 
 /// Density of a guide from the densities of its parts, 1/length.
-pub(super) fn pdf_of_both(distance_pdf: Option<f32>, light: Option<f32>) -> f32 {
-    match (distance_pdf, light) {
-        (Some(distance_pdf), Some(light)) => 0.5 * (distance_pdf + light),
+pub(super) fn pdf_of_both(distance_pdf: Option<f32>, equiangular: Option<f32>) -> f32 {
+    match (distance_pdf, equiangular) {
+        (Some(distance_pdf), Some(equiangular)) => 0.5 * (distance_pdf + equiangular),
         (one, None) | (None, one) => one.unwrap_or(0.0),
     }
 }
@@ -147,12 +148,14 @@ impl<'g> GuidedDistances<'g> {
     pub(super) fn new(
         strategy: &Strategy,
         guide: &'g DistanceGuide,
-        film: Brightness,
+        (film, flights_scale): (&Brightness, f32),
         rng: &mut PathRng,
     ) -> Self {
-        let allocation = Allocation::new(strategy, guide.distance_pdf.as_ref(), &film);
-        let whole = allocation.flights.floor();
-        let more = allocation.flights > whole && rng.uniform() < allocation.flights - whole;
+        let distance_pdf = guide.distance_pdf.as_ref();
+        let allocation = Allocation::new(strategy, distance_pdf, film, flights_scale);
+        let mean = allocation.mean_flights;
+        let whole = mean.floor();
+        let more = mean > whole && rng.uniform() < mean - whole;
         let count = whole as u32 + u32::from(more);
         let offset = if count > 0 { rng.at(Slot::GuidedDistance) } else { 0.0 };
         Self { guide, allocation, count, offset }
@@ -160,9 +163,9 @@ impl<'g> GuidedDistances<'g> {
 
     /// Expected contribution of each guided flight, as radiance.
     pub(super) fn expected(&self) -> f32 {
-        let light =
-            self.guide.distance_pdf.as_ref().map_or(0.0, |distance_pdf| distance_pdf.light());
-        light / self.allocation.flights.max(LEAST_SPREAD)
+        let distance_pdf = self.guide.distance_pdf.as_ref();
+        let in_scattered = distance_pdf.map_or(0.0, |distance_pdf| distance_pdf.in_scattered());
+        in_scattered / self.allocation.mean_flights.max(LEAST_SPREAD)
     }
 
     /// Ray parameters at which the guided flights end.
@@ -245,8 +248,8 @@ mod tests {
         let medium = scene.world.along(ray, f32::INFINITY);
         let (t0, t1) = medium.extent()?;
         let distance_pdf = probes.along(medium.clone(), &ray).filter(|_| index % 3 != 2);
-        let light = Equiangular::new(&ray, LAMP, probes.mean_cosine(), t0, t1);
-        Some((DistanceGuide::new(distance_pdf, light.filter(|_| index % 3 != 1))?, medium))
+        let equiangular = Equiangular::new(&ray, LAMP, probes.mean_cosine(), t0, t1);
+        Some((DistanceGuide::new(distance_pdf, equiangular.filter(|_| index % 3 != 1))?, medium))
     }
 
     /// A flight as the path sees it, the same with its weight over the density of null-collision
@@ -285,9 +288,9 @@ mod tests {
         medium: &MediumRay,
         index: u64,
     ) -> Drawn {
-        let film = Brightness { scattered: 1.0, share: 0.7 };
+        let film = Brightness { scattered: 1.0, volume_fraction: 0.7 };
         let mut rng = PathRng::new(index, UVec2::ZERO, 0);
-        let distances = GuidedDistances::new(strategy, guide, film, &mut rng);
+        let distances = GuidedDistances::new(strategy, guide, (&film, 1.0), &mut rng);
         let mut again = rng.clone();
         let medium = || medium.clone();
         let (flight, plain) = match distances.iter().next() {
@@ -300,14 +303,14 @@ mod tests {
                 null(medium(), strategy, Rgb::ONE, &mut again),
             ),
         };
-        Drawn { flight, plain, counts: [1.0, distances.allocation.flights] }
+        Drawn { flight, plain, counts: [1.0, distances.allocation.mean_flights] }
     }
 
     /// Density of a guide's draws at `t` estimated from the samples alone: the slope of their
     /// distribution, found by bisection. `None` where it has a step nearby.
     fn drawn_density(guide: &DistanceGuide, t: f32) -> Option<f32> {
         const STEP: f32 = 4e-3;
-        let both = guide.distance_pdf.is_some() && guide.light.is_some();
+        let both = guide.distance_pdf.is_some() && guide.equiangular.is_some();
         let halves = if both { vec![[0.0, 0.5], [0.5, 1.0]] } else { vec![[0.0, 1.0]] };
         let share_before = |t: f32| -> f64 {
             let of_part = |&[from, to]: &[f64; 2]| {

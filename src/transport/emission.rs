@@ -11,7 +11,7 @@ mod stratified;
 
 use self::ray::{RayEmission, RayKind};
 use super::march;
-use super::strategy::{Advanced, BoostMode, Integrator, Strategy};
+use super::strategy::{Advanced, BoostMode, Strategy};
 use super::tracking::majorant::EmissionMajorant;
 use crate::math::PathRng;
 use crate::volume::world::MediumRay;
@@ -36,18 +36,18 @@ enum EstimatorKind {
 }
 
 impl EmissionEstimator {
-    /// The walk that `strategy` asks for. `fitted` is k of the optimal majorant, as measured for the
-    /// picture; it matters only where [`EmissionEstimator::is_fitted`].
+    /// The walk that `strategy` asks for. `fitted` is k of the optimal majorant, as measured for
+    /// the picture; it matters only where [`EmissionEstimator::is_fitted`].
     pub fn new(strategy: &Strategy, fitted: f32) -> Self {
         let advanced = &strategy.advanced;
         let amount = advanced.boost_amount;
+        if strategy.marches() {
+            return Self(EstimatorKind::March(advanced.march_step));
+        }
+        if !strategy.majorant_boost {
+            return Self(EstimatorKind::RatioTracking(EmissionMajorant::of(strategy)));
+        }
         Self(match advanced.boost_mode {
-            _ if strategy.integrator == Integrator::March => {
-                EstimatorKind::March(advanced.march_step)
-            }
-            _ if !strategy.majorant_boost => {
-                EstimatorKind::RatioTracking(EmissionMajorant::of(strategy))
-            }
             BoostMode::Stratified => EstimatorKind::Stratified(amount),
             BoostMode::Optimal if Self::is_fitted(strategy) => {
                 EstimatorKind::Optimal(amount / Advanced::default().boost_amount * fitted)
@@ -62,7 +62,7 @@ impl EmissionEstimator {
     /// Whether k is fitted to the picture before it starts: for the optimal majorant, where camera
     /// rays gather emission by a walk of its own.
     pub fn is_fitted(strategy: &Strategy) -> bool {
-        strategy.integrator != Integrator::March
+        !strategy.marches()
             && strategy.majorant_boost
             && strategy.advanced.boost_mode == BoostMode::Optimal
             && strategy.emission_ratio_tracking

@@ -1,4 +1,6 @@
-//! A scene framed on a film, with everything that was prepared for it.
+//! A scene framed on a film, prepared in two stages: [`Frame::new`] places the probes and fits the
+//! optimal majorant; the pilot pass, before the second sample of a pixel, finds the number of
+//! guided flights that pays.
 
 use std::sync::Arc;
 
@@ -100,20 +102,20 @@ impl Frame {
         };
         let offset = Vec2::new(rng.at(Slot::PixelX), rng.at(Slot::PixelY));
         let ray = self.scene.camera.ray(self.size, pixel, offset);
-        let flights = match number {
+        let flights_scale = match number {
             SampleNumber::First if self.has_pilot() => guided_flights::FIRST,
             SampleNumber::First => 1.0,
             SampleNumber::Later(_, prepared) => prepared.guided_flights.unwrap_or(1.0),
         };
-        path::trace(&self.scene, self.context(flights), ray, &mut rng, observer)
+        path::trace(&self.scene, self.context(flights_scale), ray, &mut rng, observer)
     }
 
-    fn context(&self, flights: f32) -> PathContext<'_> {
+    fn context(&self, flights_scale: f32) -> PathContext<'_> {
         PathContext {
             emission_estimator: &self.emission_estimator,
             probes: self.probes.as_deref(),
             brightness: self.brightness,
-            flights,
+            flights_scale,
         }
     }
 
@@ -141,9 +143,10 @@ impl PixelSampler for Frame {
         if !self.has_pilot() {
             return Ok(Prepared::NOTHING);
         }
-        let context = |flights| self.context(flights);
-        let flights = guided_flights::flights(&self.scene, self.size, context, progress)?;
-        Ok(Prepared { guided_flights: Some(flights) })
+        let context = |flights_scale| self.context(flights_scale);
+        let flights_scale =
+            guided_flights::flights_scale(&self.scene, self.size, context, progress)?;
+        Ok(Prepared { guided_flights: Some(flights_scale) })
     }
 }
 

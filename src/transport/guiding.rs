@@ -33,7 +33,7 @@ const STRAIGHT: f32 = 0.3;
 pub(super) fn light_choice(scene: &Scene, context: &PathContext, vertex: &Vertex) -> LightChoice {
     let choice = direct::choice(&scene.strategy);
     let from = vertex.receiver();
-    match context.probes.and_then(|probes| probes.scores(from.position)) {
+    match context.probes_for_lights().and_then(|probes| probes.light_scores(from.position)) {
         Some(scores) => scene
             .lights
             .choice_by(scores, &from, choice.volumes, |direction| vertex.rough_value(direction)),
@@ -41,33 +41,42 @@ pub(super) fn light_choice(scene: &Scene, context: &PathContext, vertex: &Vertex
     }
 }
 
-/// p_select of ray number `scatters` of a path, if anything guides it. `light` is the point of a
-/// light that was sampled at the vertex before; for a camera ray one is drawn here.
-pub(super) fn distances(
+/// Draws p_select of ray number `scatters` of a path, if anything guides it, and the point of a
+/// light that guides the ray. `light_point` is the one that was sampled at the vertex before; it is
+/// returned unless the ray is a camera ray, for which one is drawn here.
+pub(super) fn draw_guide(
     scene: &Scene,
     context: &PathContext,
     (scatters, ray): (u32, &Ray),
     medium: &MediumRay,
-    light: &mut Option<Vec3A>,
+    light_point: Option<Vec3A>,
     rng: &mut PathRng,
-) -> Option<DistanceGuide> {
-    let guides = context.guides(&scene.strategy);
-    let probes = guides.filter(|_| scatters < GUIDED_RAYS)?;
+) -> (Option<DistanceGuide>, Option<Vec3A>) {
+    let unguided = (None, light_point);
+    let guides = context.probes_for_distances(&scene.strategy);
+    let Some(probes) = guides.filter(|_| scatters < GUIDED_RAYS) else { return unguided };
+    let Some((t0, t1)) = medium.extent() else { return unguided };
     let advanced = &scene.strategy.advanced;
-    let (t0, t1) = medium.extent()?;
-    let asks = scatters == 0 || advanced.guide_all_vertices;
-    let distance_pdf = if asks { Some(probes.along(medium.clone(), ray)?) } else { None };
+    let mut distance_pdf = None;
+    if scatters == 0 || advanced.guide_all_vertices {
+        distance_pdf = probes.along(medium.clone(), ray);
+        if distance_pdf.is_none() {
+            return unguided;
+        }
+    }
     if !advanced.equiangular {
-        return DistanceGuide::new(distance_pdf, None);
+        return (DistanceGuide::new(distance_pdf, None), light_point);
     }
-    if scatters == 0 {
-        let from = Receiver { position: distance::middle(ray, t0, t1), normal: None };
-        let choice = direct::choice(&scene.strategy);
-        *light = direct::point_of_light(scene, &from, &choice, rng);
-    }
+    let light_point = match scatters {
+        0 => {
+            let from = Receiver { position: distance::middle(ray, t0, t1), normal: None };
+            direct::point_of_light(scene, &from, &direct::choice(&scene.strategy), rng)
+        }
+        _ => light_point,
+    };
     let equiangular =
-        light.and_then(|point| Equiangular::new(ray, point, probes.mean_cosine(), t0, t1));
-    DistanceGuide::new(distance_pdf, equiangular)
+        light_point.and_then(|point| Equiangular::new(ray, point, probes.mean_cosine(), t0, t1));
+    (DistanceGuide::new(distance_pdf, equiangular), light_point)
 }
 
 /// Draws the direction in which a path continues from its vertex number `scatters`, with a share
@@ -77,27 +86,27 @@ pub(super) fn direction(
     context: &PathContext,
     scatters: u32,
     vertex: &Vertex,
-    light: Option<Vec3A>,
+    light_point: Option<Vec3A>,
     rng: &mut PathRng,
 ) -> Option<DirectionSample> {
     let strategy = &scene.strategy;
-    match context.probes.filter(|_| scatters < GUIDED_RAYS && strategy.guides()) {
+    match context.probes_for_directions(strategy).filter(|_| scatters < GUIDED_RAYS) {
         Some(probes) => {
             // Without guided flights there are no splits to even out the weights of airlight.
-            let light = light.filter(|_| context.flights > 0.0);
-            vertex.sample_guided(&mixture(&strategy.advanced, probes, vertex, light), rng)
+            let light_point = light_point.filter(|_| context.flights_scale > 0.0);
+            vertex.sample_guided(&mixture(&strategy.advanced, probes, vertex, light_point), rng)
         }
         None => vertex.sample(rng),
     }
 }
 
-/// Mixture of guided directions at a vertex; `light` is the sampled point of a light, if it has
-/// one.
+/// Mixture of guided directions at a vertex; `light_point` is the sampled point of a light, if it
+/// has one.
 fn mixture(
     advanced: &Advanced,
     probes: &Probes,
     vertex: &Vertex,
-    light: Option<Vec3A>,
+    light_point: Option<Vec3A>,
 ) -> GuidingMixture {
     let mut guiding = GuidingMixture::default();
     let from = vertex.receiver().position;
@@ -108,7 +117,7 @@ fn mixture(
     if advanced.guide_directions && !vertex.is_surface() {
         let left = 1.0 - guiding.share();
         let share = left * probes.share_of_airlight() * worth_of_airlight(&around);
-        if let Some(axis) = light.and_then(|point| (point - from).try_normalize()) {
+        if let Some(axis) = light_point.and_then(|point| (point - from).try_normalize()) {
             guiding.add(share, GuidingLobe::Airlight(Airlight::new(axis, probes.mean_cosine())));
         }
     }

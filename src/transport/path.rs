@@ -14,16 +14,19 @@
 //! twice. Every combination of toggles has the same mean. A marched ray stands for both walks,
 //! biased.
 //!
+//! A camera ray may have several guided flights, and a vertex may be left several times. Each
+//! branch but the last is followed to its end at once, then `State` is restored.
+//!
 //! The talk's ideas in this code: emission at every collision in [`super::tracking::scattering`],
-//! emission ratio tracking in [`super::emission::ratio`], the majorant boost in
-//! `tracking::majorant`, fires as lights in [`super::direct`], probe MIS in `distance` and
-//! [`super::probes`]; the number of samples of each in `counts`.
+//! emission ratio tracking in [`super::emission::ratio`], the majorant boost in [`super::emission`]
+//! (its modes) and `tracking::majorant` (clamped, literal), fires as lights in [`super::direct`],
+//! probe MIS in `distance` and [`super::probes`]; the number of samples of each in `counts`.
 
 mod state;
 
 use self::state::{Branch, State};
 use super::context::PathContext;
-use super::counts::{Counts, Standing};
+use super::counts::{Counts, PathValue};
 use super::direct::{self, PrevVertex};
 use super::distance::{self, DistanceGuide, GuidedDistances};
 use super::emission::ray::{RayEmission, RayKind};
@@ -38,9 +41,9 @@ use crate::math::{PathRng, Ray, Rgb};
 use crate::surface::{self, Intersection};
 use crate::volume::world::MediumRay;
 
-/// Most scattering events and reflections of any path. A path that reaches this limit is cut and
-/// counted.
-pub const GUARD: u32 = 100_000;
+/// Most vertices of any path: scattering events and reflections. A path that reaches this limit is
+/// cut and counted.
+pub const MOST_VERTICES: u32 = 100_000;
 
 /// Follows one path from the camera along `ray`.
 pub fn trace(
@@ -71,8 +74,8 @@ struct Path<'s> {
 }
 
 impl Path<'_> {
-    /// Advances by one ray: its emission and its end, and the flight to its vertex. Then scatters
-    /// at that vertex. False when the path is over.
+    /// Follows one ray: gathers its emission and what lies at its end, and scatters at the vertex
+    /// on it. Returns false when the path is over.
     fn advance(&mut self, rng: &mut PathRng, observer: &mut impl Observer) -> bool {
         let (scene, ray, throughput) = (self.scene, self.state.ray, self.state.throughput);
         let end = surface::intersect(&scene.surfaces, &ray);
@@ -80,7 +83,7 @@ impl Path<'_> {
         observer.step(PathStep::Ray { ray: &ray, t_max: d, throughput });
 
         let medium = scene.world.along(ray, d);
-        let marched = scene.strategy.is_biased().then(|| self.march(medium.clone(), rng));
+        let marched = scene.strategy.marches().then(|| self.march(medium.clone(), rng));
         let transmittance = scene
             .strategy
             .gathers_whole_rays()
@@ -89,7 +92,7 @@ impl Path<'_> {
             return false;
         }
         let flight = match marched {
-            Some(_) => self.table.draw(medium, goes_on(end.as_ref()), rng),
+            Some(_) => self.table.draw(medium, end_reflects(end.as_ref()), rng),
             None => self.fly(medium, end.as_ref(), rng, observer),
         };
         if flight.emission != Rgb::ZERO {
@@ -107,7 +110,7 @@ impl Path<'_> {
             self.contributions.note_first_event(&flight, d, transmittance);
         }
         match self.arrive(flight.event, end.as_ref(), observer) {
-            Some(vertex) => self.go_on(&vertex, rng, observer),
+            Some(vertex) => self.split_and_scatter(&vertex, rng, observer),
             None => false,
         }
     }
@@ -138,14 +141,19 @@ impl Path<'_> {
         }
     }
 
-    /// Continues the path from a vertex as often as the weight window asks for; false when the path
-    /// is over. All branches but the last are followed to their end.
-    fn go_on(&mut self, vertex: &Vertex, rng: &mut PathRng, observer: &mut impl Observer) -> bool {
+    /// Splits the path at a vertex as often as the weight window asks for and scatters each branch.
+    /// All branches but the last are followed to their end. Returns false when the path is over.
+    fn split_and_scatter(
+        &mut self,
+        vertex: &Vertex,
+        rng: &mut PathRng,
+        observer: &mut impl Observer,
+    ) -> bool {
         let State { ray, throughput, scatters, .. } = self.state;
-        let standing =
-            Standing { throughput, scatters, expected: self.expected, nested: self.nested };
+        let value =
+            PathValue { throughput, scatters, expected: self.expected, nested: self.nested };
         let strategy = &self.scene.strategy;
-        let counts = Counts::at(&self.context, strategy, vertex, ray.direction, standing);
+        let counts = Counts::at(&self.context, strategy, vertex, ray.direction, value);
         let splitting = counts.splitting(rng);
         self.state.throughput *= splitting.factor;
         for _ in 1..splitting.count {
@@ -169,7 +177,7 @@ impl Path<'_> {
         if self.is_last_ray() {
             return false;
         }
-        if self.state.scatters == GUARD {
+        if self.state.scatters == MOST_VERTICES {
             self.contributions.cut();
             return false;
         }
@@ -186,14 +194,15 @@ impl Path<'_> {
             let sample = direct::sample_lights(self.scene, estimator, vertex, &choice, rng);
             self.contributions.count(sample.collisions);
             let State { scatters, throughput, .. } = self.state;
-            self.contributions.add_light(scatters, throughput * sample.light, observer);
-            self.state.light = sample.point;
+            self.contributions.add_light(scatters, throughput * sample.contribution, observer);
+            self.state.light_point = sample.point;
         }
         if self.contributions.is_cut() {
             return false;
         }
-        let State { scatters, light, .. } = self.state;
-        let drawn = guiding::direction(self.scene, &self.context, scatters, vertex, light, rng);
+        let State { scatters, light_point, .. } = self.state;
+        let drawn =
+            guiding::direction(self.scene, &self.context, scatters, vertex, light_point, rng);
         let Some(drawn) = drawn else { return false };
         self.state.throughput *= drawn.weight;
         if vertex.is_broad() {
@@ -247,18 +256,21 @@ impl Path<'_> {
         observer: &mut impl Observer,
     ) -> Flight {
         let (scene, State { ray, throughput, scatters, .. }) = (self.scene, self.state);
-        let needs_end = !scene.strategy.emission_ratio_tracking || goes_on(end);
+        let needs_end = !scene.strategy.emission_ratio_tracking || end_reflects(end);
         let is_first = scatters == 0;
         let guide = if is_first || !needs_end {
-            let light = &mut self.state.light;
-            guiding::distances(scene, &self.context, (scatters, &ray), &medium, light, rng)
+            let (context, light_point) = (&self.context, self.state.light_point);
+            let (guide, light_point) =
+                guiding::draw_guide(scene, context, (scatters, &ray), &medium, light_point, rng);
+            self.state.light_point = light_point;
+            guide
         } else {
             None
         };
         let strategy = &scene.strategy;
         let flight = match guide {
             None => distance::unguided(medium, strategy, throughput, rng),
-            Some(guide) if is_first => self.fly_guided(medium, &guide, rng, observer),
+            Some(guide) if is_first => self.camera_flights(medium, &guide, rng, observer),
             Some(guide) => distance::null_or_guided(medium, strategy, &guide, throughput, rng),
         };
         self.contributions.count(flight.collisions);
@@ -267,7 +279,7 @@ impl Path<'_> {
 
     /// The camera ray's flights: guided ones in their allocated number, each of which is followed,
     /// and the unguided one, which is returned.
-    fn fly_guided(
+    fn camera_flights(
         &mut self,
         medium: MediumRay,
         guide: &DistanceGuide,
@@ -275,7 +287,7 @@ impl Path<'_> {
         observer: &mut impl Observer,
     ) -> Flight {
         let (strategy, throughput) = (&self.scene.strategy, self.state.throughput);
-        let film = self.context.brightness.scaled(self.context.flights);
+        let film = (&self.context.brightness, self.context.flights_scale);
         let distances = GuidedDistances::new(strategy, guide, film, rng);
         self.expected = distances.expected();
         for (index, t) in distances.iter().enumerate() {
@@ -288,7 +300,7 @@ impl Path<'_> {
                 let State { ray, throughput, .. } = path.state;
                 let vertex = Vertex::volume(ray.at(t), ray.direction, phase);
                 let is_lit = throughput.is_finite() && throughput != Rgb::ZERO;
-                is_lit && path.go_on(&vertex, rng, observer)
+                is_lit && path.split_and_scatter(&vertex, rng, observer)
             });
             rng.enter_vertex(0);
         }
@@ -347,7 +359,7 @@ impl Path<'_> {
     }
 }
 
-/// Whether a path continues from the surface at the end of its ray.
-fn goes_on(end: Option<&Intersection>) -> bool {
+/// Whether a surface that reflects ends a ray, so that the path continues from there.
+fn end_reflects(end: Option<&Intersection>) -> bool {
     end.is_some_and(|end| end.surface.reflects())
 }

@@ -2,10 +2,10 @@
 //! along rays to where the light is (Huang et al. 2021, section 3).
 //!
 //! Probes fill the leaves of an octree that is finer where more light is scattered, so that each
-//! stands for about as much of it. A probe keeps directions its light comes from instead of a score
-//! for one camera; the score towards any ray is read from them, μ_s ∫ L ρ dω, and weighted by the
-//! transmittance along the ray. So they serve every vertex, and stay as they are when the camera
-//! moves.
+//! probe stands for about the same amount of scattered light. A probe keeps the directions that its
+//! light comes from instead of the talk's score for one camera: the score towards any ray is
+//! computed from them, μ_s ∫ L ρ dω, and weighted by the transmittance along the ray. So probes
+//! serve every vertex, and stay valid when the camera moves.
 //!
 //! Probes only guide: whatever they estimate, the picture's mean is unchanged, as long as no sample
 //! changes the density that guides it.
@@ -15,12 +15,12 @@ mod brightness;
 mod caustic_lobes;
 mod caustics;
 mod distance_pdf;
+mod light_scores;
 mod octree;
 mod place;
 mod probe;
 #[allow(clippy::module_inception, reason = "the folder is named after its main type")]
 mod probes;
-mod scores;
 pub(super) mod stages;
 mod view;
 

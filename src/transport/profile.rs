@@ -39,7 +39,7 @@ pub struct Profile {
     pub guided: bool,
     /// Guided flights relative to the number that the probes propose; 0 where guiding does not pay
     /// in this picture.
-    pub flights: f32,
+    pub flights_scale: f32,
 }
 
 /// Values at one distance.
@@ -66,8 +66,8 @@ pub struct ProfileRow {
 }
 
 impl Profile {
-    /// Tabulates `count` rows, two at least, along a ray from the camera of `frame`; `None` where it
-    /// meets no medium.
+    /// Tabulates `count` rows, two at least, along a ray from the camera of `frame`; `None` where
+    /// it meets no medium.
     ///
     /// T is integrated by the midpoint rule. The weights are those of the expected densities, as
     /// they would be were the transmittance known; a path has those of its own null collisions,
@@ -90,18 +90,22 @@ impl Profile {
         let gather = EmissionGathering::of(&scene.strategy);
         let optical_depth = read_medium(medium.clone(), gather, &mut rows, step);
         let guides = frame.probes.as_deref().filter(|_| scene.strategy.guides());
-        let flights = prepared.guided_flights();
+        let flights_scale = prepared.guided_flights();
         let guided = guides.is_some_and(|probes| {
             let distance_pdf = probes.along(medium, ray);
-            let film = frame.brightness.scaled(flights);
-            let allocation = Allocation::new(&scene.strategy, distance_pdf.as_ref(), &film);
+            let allocation = Allocation::new(
+                &scene.strategy,
+                distance_pdf.as_ref(),
+                &frame.brightness,
+                flights_scale,
+            );
             let lights = match scene.strategy.advanced.equiangular {
                 true => points_of_light(scene, probes, ray, [t0, end]),
                 false => Vec::new(),
             };
             guide(distance_pdf.as_ref(), &lights, &allocation, &mut rows)
         });
-        Some(Self { rows, optical_depth, guided, flights })
+        Some(Self { rows, optical_depth, guided, flights_scale })
     }
 }
 
@@ -230,6 +234,6 @@ fn weights(row: &ProfileRow, allocation: &Allocation) -> (f32, f32) {
     if allocation.alone {
         return (0.0, 1.0);
     }
-    let null = mis::mixture([1.0, allocation.flights], [row.p_null, row.p_select]);
+    let null = mis::mixture([1.0, allocation.mean_flights], [row.p_null, row.p_select]);
     (null, 1.0 - null)
 }

@@ -8,9 +8,9 @@ use super::tracking::event::{Event, Flight};
 use crate::error::{Progress, Result, report};
 use crate::math::{Rgb, mean};
 
-/// The version of the paths, raised whenever (scene, strategy, seed, pixel, sample) leads to another
-/// path than before. Snapshots carry it: samples of two versions come from two estimators or two
-/// series of random numbers, so that only those of the same version are continued.
+/// The version of the paths, raised whenever (scene, strategy, seed, pixel, sample) leads to
+/// another path than before. Snapshots carry it: samples of two versions come from two estimators
+/// or two series of random numbers, so that only those of the same version are continued.
 pub const PATH_VERSION: u64 = 1;
 
 /// Contribution of one path to its pixel: four parts that sum to the beauty, and auxiliary values.
@@ -30,9 +30,9 @@ pub struct PathSample {
     pub depth: Option<f32>,
     /// Tentative collisions of all walks of the path, and steps of ray marching.
     pub tracking_steps: u32,
-    /// Whether the path was cut, at [`path::GUARD`](super::path::GUARD) events or
-    /// [`MOST_COLLISIONS`] collisions.
-    pub guard_hit: bool,
+    /// Whether the path was cut, at [`path::MOST_VERTICES`](super::path::MOST_VERTICES) vertices or
+    /// [`MOST_COLLISIONS`] collisions of a walk.
+    pub was_cut: bool,
 }
 
 impl PathSample {
@@ -104,17 +104,17 @@ impl Contributions {
     /// Counts the collisions of a walk, and notes a walk that was cut.
     pub(super) fn count(&mut self, collisions: u32) {
         self.sample.tracking_steps = self.sample.tracking_steps.saturating_add(collisions);
-        self.sample.guard_hit |= collisions >= MOST_COLLISIONS;
+        self.sample.was_cut |= collisions >= MOST_COLLISIONS;
     }
 
     /// Notes that the path is cut.
     pub(super) fn cut(&mut self) {
-        self.sample.guard_hit = true;
+        self.sample.was_cut = true;
     }
 
     /// Whether the path or one of its walks was cut.
     pub(super) fn is_cut(&self) -> bool {
-        self.sample.guard_hit
+        self.sample.was_cut
     }
 
     /// Notes coverage and depth of the camera ray, which a surface ends at `d`, if that is finite.

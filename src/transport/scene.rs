@@ -14,7 +14,8 @@ pub struct Scene {
     pub surfaces: Vec<Surface>,
     /// Lights and environment of the scene; emissive volumes themselves belong to `world`.
     pub lights: Lights,
-    /// Most real scattering events and reflections of a path; 0 for no limit but the guard.
+    /// Most real scattering events and reflections of a path; 0 for no limit but
+    /// [`path::MOST_VERTICES`](super::path::MOST_VERTICES).
     pub max_scatters: u32,
     /// Sampling strategy.
     pub strategy: Strategy,

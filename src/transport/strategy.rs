@@ -63,10 +63,10 @@ pub struct Advanced {
     /// ray; `point` evaluates one point, which is cheaper and noisier. Unbounded glowing fog always
     /// uses `line`.
     pub nee_evaluation: NeeEvaluation,
-    /// How next-event estimation selects a light. `hierarchy` (a light tree) prefers bright and near
-    /// lights; `uniform` selects every light with the same probability; `probes` prefers lights
-    /// that probes in the smoke see as bright, which takes longer to prepare, also with the toggle
-    /// off. Where nothing scatters there are no probes, and `hierarchy` is used.
+    /// How next-event estimation selects a light. `hierarchy` (a light tree) prefers bright and
+    /// near lights; `uniform` selects every light with the same probability; `probes` prefers
+    /// lights that probes in the smoke see as bright, which takes longer to prepare, also with the
+    /// toggle off. Where nothing scatters there are no probes, and `hierarchy` is used.
     pub light_selection: LightSelection,
     /// With the probes on: how the distance to the first scattering event of a camera ray is
     /// sampled. `mis` combines probe guiding and null-collision sampling by MIS, so that it is good
@@ -249,12 +249,18 @@ impl Strategy {
 
     /// Whether a ray's emission and its end are gathered all along it, wherever it scatters.
     pub fn gathers_whole_rays(&self) -> bool {
-        self.emission_ratio_tracking || self.is_biased()
+        self.emission_ratio_tracking || self.marches()
     }
 
-    /// Whether the picture converges to a biased result, however many samples it has.
-    pub fn is_biased(&self) -> bool {
+    /// Whether rays are marched, in place of all tracking.
+    pub fn marches(&self) -> bool {
         self.integrator == Integrator::March
+    }
+
+    /// Whether the picture converges to a biased result, however many samples it has: with ray
+    /// marching.
+    pub fn is_biased(&self) -> bool {
+        self.marches()
     }
 
     /// Reason why the tracker cannot be combined with the rest, and how to fix that; `None` where
@@ -265,7 +271,7 @@ impl Strategy {
 
     /// [`Strategy::tracker_refusal`] for `tracker` in place of the strategy's own.
     pub fn refusal_of(&self, tracker: Tracker) -> Option<&'static str> {
-        if tracker != Tracker::Decomposition || self.is_biased() {
+        if tracker != Tracker::Decomposition || self.marches() {
             return None;
         }
         if self.probe_mis && self.advanced.distance != Distance::Null {
@@ -285,15 +291,15 @@ impl Strategy {
         None
     }
 
-    /// Whether a pilot pass decides the share of guided flights; only where null-collision sampling
-    /// is an alternative.
+    /// Whether a pilot pass decides the number of guided flights; only where null-collision
+    /// sampling is an alternative.
     pub fn learns_share(&self) -> bool {
         self.guides() && self.advanced.share_learning && self.advanced.distance == Distance::Mis
     }
 
     /// Whether probes guide scattering.
     pub fn guides(&self) -> bool {
-        self.probe_mis && self.advanced.distance != Distance::Null && !self.is_biased()
+        self.probe_mis && self.advanced.distance != Distance::Null && !self.marches()
     }
 }
 

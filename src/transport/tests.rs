@@ -1,4 +1,5 @@
-//! All that is done before the first sample can be given up, anywhere, and changes nothing otherwise.
+//! All that is done before the first sample can be given up, anywhere, and changes nothing
+//! otherwise.
 
 use std::path::Path;
 use std::sync::Arc;

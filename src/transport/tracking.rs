@@ -1,10 +1,10 @@
 //! Null-collision tracking: the one loop that walks tentative collisions.
 //!
-//! A heterogeneous medium is filled up with fictitious matter μ_n = μ̄ − μ_t to a piecewise constant
-//! majorant μ̄, in which distances to collisions are exponential. With T̄ the transmittance of μ̄,
-//! L = ∫ T̄ [ε + μ_s L_s + μ_n L] dt + T̄(d) L_end (Miller et al. 2019, eq. 10, with emission), and
-//! each walk is a Monte Carlo reading of it. All are unbiased: the majorants hold
-//! everywhere, and roulette compensates for what it ends.
+//! A heterogeneous medium is filled up with fictitious matter μ_n = μ̄ − μ_t to a piecewise
+//! constant majorant μ̄, in which distances to collisions are exponential. With T̄ the
+//! transmittance of μ̄, L = ∫ T̄ [ε + μ_s L_s + μ_n L] dt + T̄(d) L_end (Miller et al. 2019, eq.
+//! 10, with emission), and each walk is a Monte Carlo reading of it. All are unbiased: the
+//! majorants hold everywhere, and roulette compensates for what it ends.
 //!
 //! | walk | at a tentative collision |
 //! |---|---|

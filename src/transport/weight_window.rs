@@ -4,18 +4,20 @@
 //!
 //! Guides draw from mixtures, and each draw adds to the spread of a path's weight; the window
 //! reduces it before it compounds. The expected contribution of a path comes from the probes, fixed
-//! before the path. Unbiased whatever they estimate: splits times their factor is 1 on average.
+//! before the path. The picture is unbiased whatever they estimate: the number of branches times
+//! their factor is 1 on average.
 
 use crate::math::PathRng;
 
-/// Values, relative to the expected contribution of a flight, between which a path simply goes on.
+/// Values, relative to the expected contribution of a flight, between which a path is neither split
+/// nor ended.
 const WINDOW: [f32; 2] = [0.33, 1.67];
 /// Most splits of a path at one vertex.
 const MOST_SPLITS: f32 = 8.0;
 /// Least survival probability: probes underestimate places that are brighter than their
 /// surroundings.
 const LEAST_SURVIVAL: f32 = 0.3;
-/// Most nested splits, each on the stack.
+/// Most nested splits; each takes space on the stack.
 pub(super) const MOST_NESTED: u32 = 24;
 
 /// Number of continuations of a path from a vertex, and the factor of the throughput of each.
@@ -26,9 +28,9 @@ pub(super) struct Splitting {
 }
 
 impl Splitting {
-    /// Draws the splitting of a path of `value`, which ends by roulette only if it is dim as well:
-    /// `brightness` is its throughput relative to one worth keeping. Long bright paths in white
-    /// media are many, and the probes estimate their contribution only roughly.
+    /// Draws the splitting of a path of `value`. A path of small value ends by roulette only if it
+    /// is dim as well: `brightness` is its throughput relative to one worth keeping. In white media
+    /// most paths are long and bright, and the probes estimate their contribution only roughly.
     pub(super) fn draw(value: f32, brightness: f32, may_split: bool, rng: &mut PathRng) -> Self {
         if value > WINDOW[1] && may_split {
             let wanted = value.min(MOST_SPLITS);

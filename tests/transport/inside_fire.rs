@@ -221,7 +221,8 @@ fn no_look_from_inside_exceeds_the_brightest_ray() {
         for i in 0..LOOKS {
             let mut rng = PathRng::new(seed(), UVec2::ZERO, i);
             let light =
-                direct::sample_lights(&slab, &emission_estimator, &vertex, &choice, &mut rng).light;
+                direct::sample_lights(&slab, &emission_estimator, &vertex, &choice, &mut rng)
+                    .contribution;
             assert!(light.max_element() <= brightest * 1.0001, "{depth}: a look brings {light}");
             let turn = vertex.sample(&mut rng).unwrap();
             let ray: Ray = vertex.ray(turn.direction);

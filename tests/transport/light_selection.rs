@@ -106,7 +106,7 @@ fn choices(scene: &Scene, probes: &Probes, count: u32) -> Vec<(Receiver, LightCh
             let position = (2.0 * u - Vec3A::ONE) * Vec3A::new(2.0, 1.7, 0.8);
             let normal = (i % 3 == 0).then(|| (u - Vec3A::splat(0.5)).normalize());
             let to = Receiver { position, normal };
-            let scores = probes.scores(position)?;
+            let scores = probes.light_scores(position)?;
             let value = |direction: Vec3A| 1.1 + direction.x;
             Some((to, scene.lights.choice_by(scores, &to, scene.strategy.nee, value)))
         })
@@ -178,7 +178,7 @@ fn hidden_lights_are_rarely_chosen() {
     let mut shares = [0.0; 2];
     for y in [-0.9, -0.6, -0.1, 0.4, 0.8] {
         let to = Receiver { position: Vec3A::new(0.6, y, -0.2), normal: None };
-        let scores = probes.scores(to.position).unwrap();
+        let scores = probes.light_scores(to.position).unwrap();
         let choice = scene.lights.choice_by(scores, &to, true, |_| 1.0);
         for &fire in scene.world.emissive() {
             let x = instances[fire as usize].emission_bounds().center().x;
@@ -239,7 +239,7 @@ fn scores_come_where_lights_are_chosen_by_them() {
     let scores = |strategy: Strategy| {
         let scene = with_strategy(&build(&walls()), strategy);
         crate::common::probes_of(&scene)
-            .is_some_and(|probes| probes.scores(Vec3A::new(0.5, 0.0, 0.0)).is_some())
+            .is_some_and(|probes| probes.light_scores(Vec3A::new(0.5, 0.0, 0.0)).is_some())
     };
     let probes = by(LightSelection::Probes);
     assert!(scores(probes));

@@ -150,7 +150,7 @@ impl Inspector {
         let depth = significant(f64::from(profile.optical_depth));
         let guided = match profile {
             Profile { guided: false, .. } => ", no probes",
-            Profile { flights: 0.0, .. } => ", probes switched off automatically",
+            Profile { flights_scale: 0.0, .. } => ", probes switched off automatically",
             _ => "",
         };
         ui.label(format!("Pixel {x}, {y}: optical depth {depth}{guided}"));

@@ -164,7 +164,7 @@ impl App {
         let Some(bounds) = built.scene.world.finite_bounds() else { return };
         let size = self.film_size().unwrap_or(UVec2::ONE).as_vec2();
         let camera = &mut self.editor.document.settings.camera;
-        *camera = scene::frame(camera, &bounds, size.x / size.y);
+        *camera = scene::fit_camera(camera, &bounds, size.x / size.y);
         self.editor.name_edit("frame the volumes");
     }
 }

@@ -80,8 +80,8 @@ const COLUMNS: [&str; 6] =
 const GAINS: [&str; 3] = ["toggle", "alone, of baseline's time", "left out, of full's time"];
 
 impl SweepTable {
-    /// The table of what was swept of a scene with this name and film, by so many threads in so many
-    /// CPU seconds.
+    /// The table of what was swept of a scene with this name and film, by so many threads in so
+    /// many CPU seconds.
     pub fn new(
         (scene, film): (&str, &FilmSettings),
         (swept, ranking): (&Swept, &Ranking),

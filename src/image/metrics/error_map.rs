@@ -39,9 +39,9 @@ impl ErrorMap {
 
     /// The errors up to which the pixels add up to a quarter, half and three quarters of all error.
     ///
-    /// Plain quartiles of a good picture lie in its flawless parts; these tell how bad the bad parts
-    /// are (Andersson et al., "FLIP: A Difference Evaluator for Alternating Images", 2020, section
-    /// on pooling).
+    /// Plain quartiles of a good picture lie in its flawless parts; these tell how bad the bad
+    /// parts are (Andersson et al., "FLIP: A Difference Evaluator for Alternating Images", 2020,
+    /// section on pooling).
     pub fn weighted_quartiles(&self) -> [f32; 3] {
         let mut sorted = self.map.clone();
         sorted.par_sort_unstable_by(f32::total_cmp);

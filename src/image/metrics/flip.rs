@@ -1,8 +1,8 @@
 //! FLIP: the differences that somebody notices who flips between two pictures on a screen.
 //!
-//! Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström and Fairchild, "FLIP: A Difference Evaluator
-//! for Alternating Images", Proceedings of the ACM on Computer Graphics and Interactive Techniques
-//! 3(2), 2020. Two pipelines look at the displayed pictures:
+//! Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström and Fairchild, "FLIP: A Difference
+//! Evaluator for Alternating Images", Proceedings of the ACM on Computer Graphics and Interactive
+//! Techniques 3(2), 2020. Two pipelines look at the displayed pictures:
 //!
 //! - colors, blurred as the eye blurs them at this distance ([`contrast`]), compared in a space in
 //!   which distances are evenly large ([`color`]);
@@ -49,7 +49,8 @@ pub struct Viewing {
     /// Tone mapping that brings both pictures to the screen.
     pub tone: Tone,
     /// Pixels in a degree of the visual field, from 1 to 1000: d · w · π / 180 for a screen with w
-    /// pixels per meter seen from d meters. The more, the smaller are details, and the less is seen.
+    /// pixels per meter seen from d meters. The more, the smaller are details, and the less is
+    /// seen.
     pub pixels_per_degree: f32,
 }
 

@@ -15,8 +15,8 @@ pub const REL_MSE_FLOOR: f64 = 0.01;
 ///
 /// The mean falls as one over the samples while all that is wrong is noise. A pixel of `picture`
 /// that is not finite makes its error so. The measure is that of Rousselle, Knaus and Zwicker,
-/// "Adaptive Sampling and Reconstruction using Greedy Error Minimization", 2011. Runs on the threads
-/// of the calling pool.
+/// "Adaptive Sampling and Reconstruction using Greedy Error Minimization", 2011. Runs on the
+/// threads of the calling pool.
 ///
 /// # Errors
 /// When `picture` has another number of pixels than the reference.
@@ -46,7 +46,8 @@ mod tests {
 
     #[test]
     fn constants_are_as_computed_by_hand() {
-        // R: 0.1² / (0² + 0.01) = 1; G: 0.2² / (0.3² + 0.01) = 0.4; B: the same, so 0. A is no color.
+        // R: 0.1² / (0² + 0.01) = 1; G: 0.2² / (0.3² + 0.01) = 0.4; B: the same, so 0. A is no
+        // color.
         let dark = [[0.0, 0.3, 7.0, 1.0], [0.0, 0.0, 0.0, 1.0]];
         let errors = rel_mse(&[[0.1, 0.5, 7.0, 0.0], [0.0; 4]], &reference(dark.to_vec())).unwrap();
         assert!((errors.map[0] - 1.4 / 3.0).abs() < 1e-6, "{:?}", errors.map);

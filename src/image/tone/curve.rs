@@ -60,8 +60,8 @@ impl ToneCurve {
     /// The display-linear color, each channel in 0..=1.
     ///
     /// Filmic is Narkowicz's fit of the ACES reference curve ("ACES filmic tone mapping curve",
-    /// 2015): x (2.51 x + 0.03) / (x (2.43 x + 0.59) + 0.14) for each channel. AgX is Sobotka's, with
-    /// the curve of Wrensch's fit ("Minimal AgX Implementation", 2023).
+    /// 2015): x (2.51 x + 0.03) / (x (2.43 x + 0.59) + 0.14) for each channel. AgX is Sobotka's,
+    /// with the curve of Wrensch's fit ("Minimal AgX Implementation", 2023).
     #[inline]
     pub fn apply(self, color: Rgb) -> Rgb {
         let curved = match self {
@@ -115,8 +115,8 @@ mod tests {
         assert!(ToneCurve::Filmic.apply(Rgb::splat(1.0)).x < 0.85, "no room left for fire");
     }
 
-    /// Sobotka's curve goes through middle gray: 0.18 is shown as the code 0.5 of gamma 2.2 or close
-    /// to it.
+    /// Sobotka's curve goes through middle gray: 0.18 is shown as the code 0.5 of gamma 2.2 or
+    /// close to it.
     #[test]
     fn agx_keeps_gray_gray_and_middle_gray_in_the_middle() {
         let gray = ToneCurve::Agx.apply(Rgb::splat(0.18));

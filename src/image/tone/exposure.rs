@@ -7,9 +7,9 @@ const SHARE: f32 = 0.98;
 /// Stops that an exposure may have.
 const STOPS: [f32; 2] = [-20.0, 20.0];
 
-/// Stops of exposure, in tenths, under which 98 % of the pixels are not brighter than 1: rare bright
-/// samples don't count, and a flame is bright without being white all over. `None` for a black
-/// picture.
+/// Stops of exposure, in tenths, under which 98 % of the pixels are not brighter than 1: rare
+/// bright samples don't count, and a flame is bright without being white all over. `None` for a
+/// black picture.
 pub fn auto_exposure(pixels: &[[f32; 4]]) -> Option<f32> {
     let mut values: Vec<f32> = pixels
         .iter()

@@ -73,7 +73,7 @@ pub struct Trial {
 }
 
 /// The trials of a sweep around `strategy`, whose integrator and finer choices all of them share.
-/// What `idle` says to change nothing is not rendered twice.
+/// Two strategies that differ only in toggles that `idle` gives a reason for are rendered once.
 pub fn plan(strategy: &Strategy, idle: &Idle<'_>) -> Vec<Trial> {
     let [baseline, full] =
         [Preset::Baseline, Preset::Full].map(|preset| strategy.with_toggles_of(preset));

@@ -44,8 +44,8 @@ pub enum Gain {
 /// The result of a sweep.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ranking {
-    /// The trials, the fastest first and what does the same behind its twin; last those of which
-    /// nothing is known.
+    /// The trials, the fastest first. A trial that does the same as another follows it; trials of
+    /// which nothing is known come last.
     pub entries: Vec<RankedTrial>,
     /// The number of the entry to leave on; none while something is not known yet.
     pub leave_on: Option<usize>,

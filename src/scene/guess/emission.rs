@@ -2,8 +2,8 @@
 
 use glam::Vec3A;
 
+use super::grid_columns::{FAIRLY, columns, quantile};
 use super::note::{About, Note};
-use super::probe::{FAIRLY, columns, quantile};
 use super::roles::Candidate;
 use crate::format::two_digits;
 use crate::math::{Aabb, luminance};
@@ -12,8 +12,8 @@ use crate::scene::role::{Role, flame_stops};
 use crate::scene::settings::{EmissionMode, EmissionSettings, Normalize};
 use crate::volume::blackbody;
 
-/// The settings of the emission of a grid, so bright that a fairly bright line along `axis` shows the
-/// radiance that is wanted.
+/// The settings of the emission of a grid, so bright that a fairly bright line along `axis` shows
+/// the radiance that is wanted.
 pub(super) fn emission_settings(
     candidate: &Candidate,
     role: Role,

@@ -16,10 +16,10 @@ pub(super) struct State {
     pub(super) guiding_ratio: f32,
     /// Scattering events and reflections so far.
     pub(super) scatters: u32,
-    /// The vertex the ray left, for MIS; `None` for the camera ray.
+    /// The vertex that the ray left, for MIS; `None` for the camera ray.
     pub(super) prev_vertex: Option<PrevVertex>,
     /// Sampled point of a light that the ray is guided by.
-    pub(super) light: Option<Vec3A>,
+    pub(super) light_point: Option<Vec3A>,
     pub(super) branch: Branch,
 }
 
@@ -44,7 +44,7 @@ impl State {
             guiding_ratio: 1.0,
             scatters: 0,
             prev_vertex: None,
-            light: None,
+            light_point: None,
             branch: Branch::Main,
         }
     }

@@ -1,12 +1,14 @@
-//! Number of guided flights for a picture, measured by a pilot pass before the second sample.
+//! The pilot pass, which measures before the second sample of a pixel how many guided flights pay
+//! in a picture.
 //!
 //! Probes cost time along every ray, and each guided flight is a path. Inside of smoke with a lamp
 //! in it they lower the noise a hundred times; a cloud under an even sky, or fire that hardly
-//! scatters, is as noisy without them and takes half of the time. So each of a few shares is tried
-//! on some pixels, and the one with the least variance times cost is taken.
+//! scatters, is as noisy without them and takes half of the time. So the pilot pass tries a few
+//! scales of the number of guided flights on some pixels, and takes the one with the least variance
+//! times cost.
 //!
 //! Costs are counted, not timed, and the random numbers are none of the picture's, so that the same
-//! scene on the same film always gets the same share. Unbiased whichever that is.
+//! scene on the same film always gets the same scale. The picture is unbiased with any of them.
 
 use glam::UVec2;
 
@@ -19,13 +21,13 @@ use crate::{
     math::luminance,
 };
 
-/// Shares that the pilot pass tries, relative to the flights that the probes propose.
+/// Scales that the pilot pass tries, relative to the number of flights that the probes propose.
 const TRIED: [f32; 4] = [0.0, 0.06, 0.25, 1.0];
-/// Share of guided flights in samples that don't wait for the pilot pass.
+/// The scale that first samples use, which do not wait for the pilot pass.
 pub(in crate::transport) const FIRST: f32 = 0.25;
-/// Cost spent on each share, in tracking steps of one of two paths at each pixel.
+/// Cost spent on each scale, in tracking steps of one of two paths at each pixel.
 const BUDGET: f64 = 131_072.0;
-/// Most pixels that a share is tried on.
+/// Most pixels that a scale is tried on.
 const MOST_PILOT_PIXELS: u32 = 1 << 14;
 /// Cost of reading the probes along a ray, in tracking steps. Measured as the rest is.
 const GUIDE_COST: f64 = 26.0;
@@ -33,12 +35,12 @@ const GUIDE_COST: f64 = 26.0;
 /// measures to a fifth.
 const MARGIN: f64 = 0.8;
 
-/// The share with the least variance times cost for `scene` on a film of `size`; `context` builds
-/// the context of a share.
+/// The scale of guided flights with the least variance times cost for `scene` on a film of `size`;
+/// `context` builds the context of a scale.
 ///
 /// # Errors
 /// [`Error::Cancelled`](crate::error::Error::Cancelled) where `progress` says so.
-pub(in crate::transport) fn flights<'s>(
+pub(in crate::transport) fn flights_scale<'s>(
     scene: &Scene,
     size: UVec2,
     context: impl Fn(f32) -> PathContext<'s> + Sync,
@@ -51,38 +53,38 @@ pub(in crate::transport) fn flights<'s>(
     // Threads of their own: a worker that waits here for others might take up a sample meanwhile
     // that waits for this.
     std::thread::scope(|scope| {
-        for (trial, share) in trials.iter_mut().zip(TRIED) {
-            let context = context(share);
-            let work = move || *trial = Some(ShareTrial::new(scene, size, context, progress));
+        for (trial, scale) in trials.iter_mut().zip(TRIED) {
+            let context = context(scale);
+            let work = move || *trial = Some(ScaleTrial::new(scene, size, context, progress));
             // Where the system refuses a thread, this one does the work below.
             let _ = std::thread::Builder::new().name("pilot".to_owned()).spawn_scoped(scope, work);
         }
     });
-    let mut done = [ShareTrial::default(); TRIED.len()];
-    for ((done, trial), share) in done.iter_mut().zip(trials).zip(TRIED) {
-        *done = trial.unwrap_or_else(|| ShareTrial::new(scene, size, context(share), progress))?;
+    let mut done = [ScaleTrial::default(); TRIED.len()];
+    for ((done, trial), scale) in done.iter_mut().zip(trials).zip(TRIED) {
+        *done = trial.unwrap_or_else(|| ScaleTrial::new(scene, size, context(scale), progress))?;
     }
     Ok(best(&done))
 }
 
-/// The share with the least variance times cost, if it is clearly better than none.
-fn best(trials: &[ShareTrial; TRIED.len()]) -> f32 {
-    // In a fire that hardly scatters, direct emission is most of the noise, and no share lowers it.
+/// The scale with the least variance times cost, or none where it is not clearly better.
+fn best(trials: &[ScaleTrial; TRIED.len()]) -> f32 {
+    // In a fire that hardly scatters, direct emission is most of the noise, and no scale lowers it.
     let emission = trials.iter().map(|trial| trial.emission).sum::<f64>() / trials.len() as f64;
     let (mut least, mut best) = (f64::INFINITY, FIRST);
-    for (share, trial) in TRIED.into_iter().zip(trials) {
-        let margin = if share > 0.0 { 1.0 } else { MARGIN };
+    for (scale, trial) in TRIED.into_iter().zip(trials) {
+        let margin = if scale > 0.0 { 1.0 } else { MARGIN };
         let product = (trial.scattered + emission) * trial.cost * margin;
         if product < least {
-            (least, best) = (product, share);
+            (least, best) = (product, scale);
         }
     }
     best
 }
 
-/// Measurements of one share.
+/// Measurements of one scale.
 #[derive(Clone, Copy, Debug, Default)]
-struct ShareTrial {
+struct ScaleTrial {
     /// Mean over the pixels of the variance of the light that is scattered or reflected to them.
     scattered: f64,
     /// Mean over the pixels of the variance of the emission that is seen directly.
@@ -91,7 +93,7 @@ struct ShareTrial {
     cost: f64,
 }
 
-impl ShareTrial {
+impl ScaleTrial {
     fn new(
         scene: &Scene,
         size: UVec2,
@@ -102,8 +104,11 @@ impl ShareTrial {
         while trial.cost < BUDGET && pilot_pixels < MOST_PILOT_PIXELS {
             report(progress, (trial.cost / BUDGET) as f32)?;
             let pilot_pixel = PilotPixel::new(scene, size, pilot_pixels);
-            let guides =
-                if context.flights > 0.0 && pilot_pixel.meets_medium() { GUIDE_COST } else { 0.0 };
+            let guides = if context.flights_scale > 0.0 && pilot_pixel.meets_medium() {
+                GUIDE_COST
+            } else {
+                0.0
+            };
             let [a, b] = [0, 1].map(|number| {
                 let mut cost = Cost::default();
                 let sample = pilot_pixel.path(context, 0, number, &mut cost);
@@ -182,16 +187,16 @@ mod tests {
         }
     }
 
-    /// Each share is selected where it has the least variance times cost.
+    /// Each scale is selected where it has the least variance times cost.
     #[test]
     fn the_least_variance_times_cost_is_best() {
-        let trial = |scattered, cost| ShareTrial { scattered, emission: 1.0, cost };
-        for (variances, costs, share) in [
+        let trial = |scattered, cost| ScaleTrial { scattered, emission: 1.0, cost };
+        for (variances, costs, scale) in [
             ([1.0, 1.0, 1.0, 1.0], [1.0, 2.0, 3.0, 4.0], 0.0),
             ([9.0, 1.0, 0.9, 0.8], [1.0, 2.0, 3.0, 4.0], 0.06),
             ([9.0, 9.0, 1.0, 0.9], [1.0, 2.0, 3.0, 4.0], 0.25),
             ([99.0, 50.0, 20.0, 1.0], [1.0, 2.0, 3.0, 4.0], 1.0),
-            // Variance that no share lowers makes the cheapest share best.
+            // Variance that no scale lowers makes the cheapest share best.
             ([0.3, 0.2, 0.1, 0.0], [1.0, 2.0, 3.0, 4.0], 0.0),
             // Hardly better than none is not clearly better.
             ([1.0, 0.9, 2.0, 2.0], [1.0, 1.0, 1.0, 1.0], 0.0),
@@ -199,7 +204,7 @@ mod tests {
             ([f64::NAN; 4], [1.0; 4], FIRST),
         ] {
             let trials = std::array::from_fn(|i| trial(variances[i], costs[i]));
-            assert_eq!(best(&trials), share, "{variances:?}");
+            assert_eq!(best(&trials), scale, "{variances:?}");
         }
     }
 

@@ -57,7 +57,7 @@ pub(super) fn indirect_light(
         emission_estimator: &emission_estimator,
         probes: Some(probes),
         brightness,
-        flights: 1.0,
+        flights_scale: 1.0,
     };
     let learn = |(node, bounds): &(u32, Aabb)| {
         Ok((*node, around(&scene, context, (*node, bounds), progress)?))

@@ -154,7 +154,7 @@ fn unguided(emission_estimator: &EmissionEstimator) -> PathContext<'_> {
         emission_estimator,
         probes: None,
         brightness: Brightness::default(),
-        flights: 0.0,
+        flights_scale: 0.0,
     }
 }
 

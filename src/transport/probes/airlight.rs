@@ -1,4 +1,5 @@
-//! Share of the lights' power that the medium scatters: the strength of airlight around them.
+//! The fraction of the lights' power that the medium scatters, which decides how many directions
+//! are drawn towards airlight.
 
 use std::f32::consts::TAU;
 
@@ -20,8 +21,8 @@ use crate::{
 /// Rays that are followed from the lights.
 const RAYS: u32 = 256;
 
-/// Share of the power of all lights at finite distances that is scattered at least once, the albedo
-/// included; 0 without such lights.
+/// The fraction of the power of all lights at finite distances that is scattered at least once,
+/// attenuation by the albedo included; 0 without such lights.
 pub(super) fn scattered_share(scene: &Scene, progress: Progress) -> Result<f32> {
     let emitters = scene.lights.emitters(&scene.world);
     let intensity = |emitter: &Emitter| f64::from(emitter.intensity.clamp(0.0, f32::MAX));
@@ -45,7 +46,7 @@ pub(super) fn scattered_share(scene: &Scene, progress: Progress) -> Result<f32> 
     Ok(if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 })
 }
 
-/// Scattered share of the power along one ray from a light.
+/// The fraction of the power along one ray from a light that is scattered.
 fn scattered_of(scene: &Scene, emitter: &Emitter, rng: &mut PathRng) -> f32 {
     let u = Vec3A::new(rng.uniform(), rng.uniform(), rng.uniform());
     let origin = emitter.bounds.min + u * emitter.bounds.size();

@@ -1,5 +1,5 @@
-//! Mean in-scattered radiance over a film, estimated from the probes, and its share among surface
-//! reflection.
+//! The light of a film after one bounce, estimated from the probes: the mean radiance that the
+//! medium scatters, and its fraction beside what surfaces reflect.
 
 use glam::{UVec2, Vec2};
 
@@ -21,9 +21,9 @@ const SIDE: u32 = 24;
 pub struct Brightness {
     /// Mean radiance that the medium scatters into a camera ray.
     pub scattered: f32,
-    /// Share, 0 to 1, of in-scattered radiance in all of it; the rest is reflected by surfaces, and
-    /// guiding does not help it.
-    pub share: f32,
+    /// Fraction, 0 to 1, of the light after one bounce that the medium scatters; surfaces reflect
+    /// the rest, and guiding does not help it.
+    pub volume_fraction: f32,
 }
 
 impl Brightness {
@@ -39,16 +39,11 @@ impl Brightness {
             scattered += one;
             reflected += other;
         }
-        let share = scattered / (scattered + reflected);
+        let volume_fraction = scattered / (scattered + reflected);
         Ok(Self {
             scattered: scattered / (SIDE * SIDE) as f32,
-            share: if share.is_finite() { share } else { 1.0 },
+            volume_fraction: if volume_fraction.is_finite() { volume_fraction } else { 1.0 },
         })
-    }
-
-    /// The brightness that allocates `flights` times as many guided flights.
-    pub fn scaled(self, flights: f32) -> Self {
-        Self { share: self.share * flights, ..self }
     }
 }
 
@@ -60,7 +55,7 @@ fn light_along(probes: &Probes, scene: &Scene, size: UVec2, index: u32) -> [f32;
     let end = surface::intersect(&scene.surfaces, &ray);
     let t_max = end.as_ref().map_or(f32::INFINITY, |end| end.hit.t);
     let distance_pdf = probes.along(scene.world.along(ray, t_max), &ray);
-    let scattered = distance_pdf.as_ref().map_or(0.0, |distance_pdf| distance_pdf.light());
+    let scattered = distance_pdf.as_ref().map_or(0.0, |distance_pdf| distance_pdf.in_scattered());
     let Some(vertex) = end.and_then(|end| Vertex::reflecting(&end, &ray)) else {
         return [scattered, 0.0];
     };
@@ -68,7 +63,7 @@ fn light_along(probes: &Probes, scene: &Scene, size: UVec2, index: u32) -> [f32;
     let (emission_estimator, choice) =
         (EmissionEstimator::coarse(), direct::choice(&scene.strategy));
     let sample = direct::sample_lights(scene, &emission_estimator, &vertex, &choice, &mut rng);
-    let reflected = luminance(sample.light)
+    let reflected = luminance(sample.contribution)
         * distance_pdf.map_or(1.0, |distance_pdf| distance_pdf.transmittance());
     [scattered, if reflected.is_finite() { reflected } else { 0.0 }]
 }

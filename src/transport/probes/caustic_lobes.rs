@@ -111,7 +111,8 @@ impl CausticLobe {
         Some(Self { point, direction, concentration, fluence })
     }
 
-    /// ∫ L ρ dω back along a ray with the unit `direction`, for a phase function of mean cosine `g`.
+    /// ∫ L ρ dω back along a ray with the unit `direction`, for a phase function of mean cosine
+    /// `g`.
     #[inline]
     pub(super) fn in_scattered(&self, g: f32, direction: Vec3A) -> f32 {
         self.fluence * henyey_greenstein(g, direction, self.direction)

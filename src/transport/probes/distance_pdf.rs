@@ -15,8 +15,9 @@ pub struct DistancePdf {
     /// Transmittance T along the whole ray, estimated from the probes.
     transmittance: f32,
     /// Radiance scattered into the ray, estimated from the probes.
-    light: f32,
-    /// Second moment of an unguided flight's contribution, relative to the square of `light`.
+    in_scattered: f32,
+    /// Second moment of an unguided flight's contribution, relative to the square of
+    /// `in_scattered`.
     spread: f32,
     pieces: SmallVec<[Piece; MOST_PIECES]>,
 }
@@ -146,8 +147,9 @@ impl DistancePdfBuilder {
             piece.before = before;
             before += piece.share;
         }
-        let (light, spread) = if lit { (light, self.square / light / light) } else { (0.0, 1.0) };
-        Some(DistancePdf { transmittance: self.transmittance, light, spread, pieces })
+        let (in_scattered, spread) =
+            if lit { (light, self.square / light / light) } else { (0.0, 1.0) };
+        Some(DistancePdf { transmittance: self.transmittance, in_scattered, spread, pieces })
     }
 }
 
@@ -164,8 +166,8 @@ impl DistancePdf {
     }
 
     /// Radiance scattered into the ray, estimated from the probes; 0 where they estimate none.
-    pub fn light(&self) -> f32 {
-        self.light
+    pub fn in_scattered(&self) -> f32 {
+        self.in_scattered
     }
 
     /// Variance of an unguided flight's contribution, relative to the square of its mean. 0 where

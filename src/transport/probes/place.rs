@@ -6,13 +6,13 @@ use rayon::prelude::*;
 
 use super::airlight;
 use super::caustic_lobes::CausticLobes;
+use super::light_scores::light_scores;
 use super::octree::{self, Octree, child_of};
 use super::probe::Probe;
 use super::probes::{OUTSIDE, Probes};
-use super::scores;
 use super::stages::{PLACED, SEED};
 use crate::error::{Progress, Result, report};
-use crate::light::Scores;
+use crate::light::LightScores;
 use crate::math::{Aabb, PathRng};
 use crate::transport::emission::EmissionEstimator;
 use crate::transport::scene::Scene;
@@ -44,7 +44,7 @@ impl Probes {
         let mut probes = Self {
             octree,
             probes: vec![first],
-            scores: Vec::new(),
+            light_scores: Vec::new(),
             caustic_lobes: CausticLobes::default(),
             outside: 0.0,
             mean_cosine: 0.0,
@@ -126,18 +126,19 @@ impl Probes {
         Ok(())
     }
 
-    /// Scores the lights for each leaf.
+    /// LightScores the lights for each leaf.
     fn score_lights(&mut self, builder: &Builder<'_>, progress: Progress) -> Result<()> {
         let leaves = self.octree.leaves();
         let score = |(node, bounds): &(u32, Aabb)| {
             report(progress, PLACED)?;
-            Ok((*node, builder.scores(*node, bounds)))
+            Ok((*node, builder.light_scores(*node, bounds)))
         };
-        let scored: Result<Vec<(u32, Option<Scores>)>> = leaves.par_iter().map(score).collect();
+        let scored: Result<Vec<(u32, Option<LightScores>)>> =
+            leaves.par_iter().map(score).collect();
         let scored = scored?;
-        self.scores = vec![None; self.probes.len()];
+        self.light_scores = vec![None; self.probes.len()];
         for (node, scores) in scored {
-            self.scores[node as usize] = scores;
+            self.light_scores[node as usize] = scores;
         }
         Ok(())
     }
@@ -170,9 +171,9 @@ impl Builder<'_> {
         Probe::new(self.scene, &self.emission_estimator, bounds, &mut rng)
     }
 
-    /// Scores of the lights for a leaf.
-    fn scores(&self, node: u32, bounds: &Aabb) -> Option<Scores> {
-        scores::scores(self.scene, node, bounds)
+    /// LightScores of the lights for a leaf.
+    fn light_scores(&self, node: u32, bounds: &Aabb) -> Option<LightScores> {
+        light_scores(self.scene, node, bounds)
     }
 
     fn may_scatter(&self, bounds: &Aabb) -> bool {

@@ -96,8 +96,8 @@ impl Indirect {
         }
     }
 
-    /// ∫ L ρ dω for a phase function of mean cosine `g`: Henyey-Greenstein lobes stay such when they
-    /// are convolved, their mean cosines multiplied.
+    /// ∫ L ρ dω for a phase function of mean cosine `g`: Henyey-Greenstein lobes stay such when
+    /// they are convolved, their mean cosines multiplied.
     #[inline]
     fn in_scattered(&self, g: f32, direction: Vec3A) -> f32 {
         self.fluence * henyey_greenstein(g * self.cosine, direction, self.axis)

@@ -6,7 +6,7 @@ use super::caustic_lobes::{CausticLobe, CausticLobes, PhotonSegment};
 use super::distance_pdf::{DistancePdf, DistancePdfBuilder, RayPiece};
 use super::octree::Octree;
 use super::probe::{Indirect, Probe};
-use crate::light::Scores;
+use crate::light::LightScores;
 use crate::math::{Aabb, Ray, mean};
 use crate::volume::medium::Segment;
 use crate::volume::world::MediumRay;
@@ -24,16 +24,16 @@ pub struct Probes {
     pub(super) octree: Octree,
     /// Probes by node; inner nodes keep the probe from before they were cut.
     pub(super) probes: Vec<Probe>,
-    /// Scores of the lights, by node, at leaves from which any light is visible; empty if lights
-    /// are not chosen by probes.
-    pub(super) scores: Vec<Option<Scores>>,
+    /// LightScores of the lights, by node, at leaves from which any light is visible; empty if
+    /// lights are not chosen by probes.
+    pub(super) light_scores: Vec<Option<LightScores>>,
     /// Caustics: light that specular surfaces reflect into the medium.
     pub(super) caustic_lobes: CausticLobes,
     /// Radiance scattered outside of the octree per unit of μ_s.
     pub(super) outside: f32,
     /// Mean cosine of the phase functions, weighted by scattered power.
     pub(super) mean_cosine: f32,
-    /// Share of the lights' light that is scattered at least once.
+    /// Fraction of the lights' power that is scattered at least once.
     pub(super) scattered: f32,
 }
 
@@ -64,12 +64,12 @@ impl Probes {
         self.mean_cosine = self.weighted_cosine();
     }
 
-    /// Scores of the lights around a point, if lights are chosen by probes there.
-    pub fn scores(&self, point: Vec3A) -> Option<&Scores> {
-        if self.scores.is_empty() {
+    /// LightScores of the lights around a point, if lights are chosen by probes there.
+    pub fn light_scores(&self, point: Vec3A) -> Option<&LightScores> {
+        if self.light_scores.is_empty() {
             return None;
         }
-        self.scores.get(self.octree.leaf_at(point)? as usize)?.as_ref()
+        self.light_scores.get(self.octree.leaf_at(point)? as usize)?.as_ref()
     }
 
     /// Number of probes.

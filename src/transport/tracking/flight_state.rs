@@ -1,5 +1,6 @@
 //! Weight and density of a flight, collision by collision: the same for the walk that chooses its
-//! events and for the walk to an event that was drawn otherwise, so that MIS compares like with like.
+//! events and for the walk to an event that was drawn otherwise, so that MIS compares like with
+//! like.
 //!
 //! At drawn coefficients the scattering walk takes a null collision with P_n and scatters with P_s.
 //! The density of the flight is Π P_n · μ̄ P_s, and its weight Π μ_n/(μ̄ P_n) · μ_s/(μ̄ P_s); the
@@ -80,9 +81,9 @@ impl FlightState {
         rate
     }
 
-    /// Probability that an endless uniform segment is crossed without a collision: the share, in the
-    /// path's color, of the channels it is clear to. `None` where it is left to the collisions; not
-    /// usable, not a number, where nothing is left to follow.
+    /// Probability that an endless uniform segment is crossed without a collision: the share, in
+    /// the path's color, of the channels it is clear to. `None` where it is left to the collisions;
+    /// not usable, not a number, where nothing is left to follow.
     pub(super) fn escape_probability(
         &self,
         medium: &MediumRay,

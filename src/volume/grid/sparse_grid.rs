@@ -11,7 +11,8 @@ use super::voxel::Voxel;
 /// A sparse grid of `f32` or [`Vec3A`] values whose memory grows with the stored data, not with the
 /// box around it.
 ///
-/// Built by a [`GridBuilder`](super::GridBuilder) or [`SparseGrid::from_dense`] and not changed afterwards.
+/// Built by a [`GridBuilder`](super::GridBuilder) or [`SparseGrid::from_dense`] and not changed
+/// afterwards.
 pub struct SparseGrid<V> {
     pub(super) index: Index,
     /// The bricks; the first holds the background.

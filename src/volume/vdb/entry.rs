@@ -190,7 +190,8 @@ impl Descriptor {
 const LEVELS: &str = "5_4_3";
 
 impl GridInfo {
-    /// The type of the values, such as `float` or `vec3s`; the whole type where it has no such part.
+    /// The type of the values, such as `float` or `vec3s`; the whole type where it has no such
+    /// part.
     pub fn value_type(&self) -> &str {
         split_type(&self.type_name).map_or(&self.type_name, |(value, _)| value)
     }

@@ -1,5 +1,5 @@
-//! Errors are those of the authors' `flip-evaluator` 1.7 (from PyPI, which runs their C++ on the CPU),
-//! given the same codes divided by 255, and of the paper's formulas by hand.
+//! Errors are those of the authors' `flip-evaluator` 1.7 (from PyPI, which runs their C++ on the
+//! CPU), given the same codes divided by 255, and of the paper's formulas by hand.
 
 use super::*;
 use crate::image::tone::ToneCurve;
@@ -113,9 +113,9 @@ fn uniform_pictures_follow_the_formulas() {
     let near = |ours: f64, expected: f64| assert!((ours - expected).abs() < 2e-5, "{ours}");
     // Nothing is further apart than green and blue.
     near(error([0, 255, 0], [0, 0, 255]), 1.0);
-    // White is 100 lighter than black and of the same color. Green has L, a, b of 87.7362, -75.6099,
-    // 72.9812 and blue of 32.2982, 25.5781, -34.8364. The authors' program says 0.967388, for
-    // the root of rounding errors of its features is no longer small.
+    // White is 100 lighter than black and of the same color. Green has L, a, b of 87.7362,
+    // -75.6099, 72.9812 and blue of 32.2982, 25.5781, -34.8364. The authors' program says 0.967388,
+    // for the root of rounding errors of its features is no longer small.
     let largest = (87.7362_f64 - 32.2982) + (75.6099_f64 + 25.5781).hypot(72.9812 + 34.8364);
     let (white, largest) = (100_f64.powf(0.7), largest.powf(0.7));
     let expected = 0.95 + 0.05 * (white - 0.4 * largest) / (0.6 * largest);

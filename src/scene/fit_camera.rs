@@ -1,6 +1,6 @@
-//! Framing: where a camera must stand so that a box just fills the picture.
+//! Moving a camera so that a box just fits its picture.
 
-use glam::{Affine3A, Vec3, Vec3A};
+use glam::{Vec3, Vec3A};
 
 use super::settings::CameraSettings;
 use crate::math::Aabb;
@@ -10,7 +10,7 @@ const FILL: f32 = 0.95;
 
 /// A camera with the view direction and field of view of `view`, aimed at the middle of `bounds`
 /// and moved so far off that the box fills a picture of `aspect` (width / height).
-pub fn frame(view: &CameraSettings, bounds: &Aabb, aspect: f32) -> CameraSettings {
+pub fn fit_camera(view: &CameraSettings, bounds: &Aabb, aspect: f32) -> CameraSettings {
     let center = bounds.center();
     let forward = Vec3A::from(Vec3::from(view.target) - Vec3::from(view.position));
     let forward = forward.try_normalize().unwrap_or(Vec3A::Y);
@@ -33,12 +33,6 @@ pub fn frame(view: &CameraSettings, bounds: &Aabb, aspect: f32) -> CameraSetting
     }
 }
 
-/// The box around a box of some grid, carried into the world.
-pub(super) fn bounds_in_world(min: Vec3, max: Vec3, world_from_index: &Affine3A) -> Aabb {
-    let half = Vec3A::splat(0.5);
-    Aabb::new(Vec3A::from(min) - half, Vec3A::from(max) + half).transformed(world_from_index)
-}
-
 #[cfg(test)]
 mod tests {
     use glam::{UVec2, Vec2};
@@ -51,9 +45,9 @@ mod tests {
         let bounds = Aabb::new(Vec3A::new(-1.0, 2.0, 0.0), Vec3A::new(3.0, 5.0, 9.0));
         let size = UVec2::new(160, 90);
         let view = CameraSettings { position: [1.0, -4.0, 3.0], ..CameraSettings::default() };
-        let framed = frame(&view, &bounds, 160.0 / 90.0);
-        let [position, target, up] = [framed.position, framed.target, framed.up].map(Vec3A::from);
-        let camera = Camera::look_at(position, target, up, framed.fov_x).unwrap();
+        let fitted = fit_camera(&view, &bounds, 160.0 / 90.0);
+        let [position, target, up] = [fitted.position, fitted.target, fitted.up].map(Vec3A::from);
+        let camera = Camera::look_at(position, target, up, fitted.fov_x).unwrap();
         let sees = |pixel: UVec2| {
             let ray = camera.ray(size, pixel, Vec2::splat(0.5));
             bounds.intersect(&ray, 0.0, f32::INFINITY).is_some()

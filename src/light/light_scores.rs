@@ -1,5 +1,5 @@
-//! Scores of the lights around a place: the visibility of the best few lights, and the share of the
-//! choices left to the hierarchy for all others.
+//! Light scores around a place: the visibility of the best few lights, and the share of the choices
+//! that is left to the hierarchy for all others.
 //!
 //! At a receiver x light l is chosen with probability q_l(x) = s_l(x) + r h_l(x), where h_l is the
 //! hierarchy's and r, the share that is left to it, never vanishes: whatever the scores, each light
@@ -29,7 +29,7 @@ pub struct Visibility {
 
 /// Scores of the lights around a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Scores {
+pub struct LightScores {
     /// Lights with their visibility, the brightest first; 0 where there are no more.
     best: [(u32, f32); BEST],
     /// The share r of the choices that is left to the hierarchy.
@@ -56,7 +56,7 @@ struct LightTally {
     samples: f32,
 }
 
-impl Scores {
+impl LightScores {
     /// Scores from samples that the hierarchy has chosen, in any order; `None` where no light is
     /// visible.
     ///

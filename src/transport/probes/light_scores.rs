@@ -1,22 +1,22 @@
-//! Scores of the lights around a probe, by shadow rays from points in it: hidden lights score
+//! LightScores of the lights around a probe, by shadow rays from points in it: hidden lights score
 //! nothing, lights dimmed by smoke score less.
 
 use glam::{UVec2, Vec3A};
 
 use crate::{
-    light::{Receiver, Scores, Visibility},
+    light::{LightScores, Receiver, Visibility},
     math::{Aabb, PathRng, mean},
     transport::{direct, scene::Scene},
 };
 
 /// Shadow rays to lights from each probe.
 const SHADOW_RAYS: u32 = 32;
-/// Points that are tried for one that scatters before a shadow ray starts from any.
+/// Most random points that are tried for the start of a shadow ray, until one of them scatters.
 const TRIES: u32 = 3;
 
-/// Scores of the lights around `bounds`, for the probe of a node; `None` where no light is visible.
-/// The lights are chosen by the hierarchy, evenly spread over its choices.
-pub(super) fn scores(scene: &Scene, node: u32, bounds: &Aabb) -> Option<Scores> {
+/// LightScores of the lights around `bounds`, for the probe of a node; `None` where no light is
+/// visible. The lights are chosen by the hierarchy, evenly spread over its choices.
+pub(super) fn light_scores(scene: &Scene, node: u32, bounds: &Aabb) -> Option<LightScores> {
     let mut rng = PathRng::new(super::stages::SEED, UVec2::new(node, 1), 1);
     let offset = f64::from(rng.uniform());
     let shadow_ray = |index: u32| {
@@ -25,7 +25,7 @@ pub(super) fn scores(scene: &Scene, node: u32, bounds: &Aabb) -> Option<Scores> 
         direct::visibility(scene, &from, pick, &mut rng)
     };
     let mut visibilities: Vec<Visibility> = (0..SHADOW_RAYS).filter_map(shadow_ray).collect();
-    Scores::new(&mut visibilities)
+    LightScores::new(&mut visibilities)
 }
 
 /// A random point that scatters, if one is found.

@@ -1,4 +1,5 @@
-//! Measuring a grid from outside: its thickness or brightness along lines, and its visible bounds.
+//! Integrals of a grid's values along parallel lines through it (its columns), for its thickness
+//! and brightness as seen from outside, and the bounds of the part that is seen.
 
 use glam::Vec3A;
 
