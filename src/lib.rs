@@ -31,7 +31,7 @@
 //! use std::{path::Path, sync::{Arc, atomic::AtomicBool}};
 //! use flambeau::error::NO_PROGRESS;
 //! use flambeau::image::{png, tone::Tone};
-//! use flambeau::render::{RenderJob, publish, render_headless, schedule::Limits};
+//! use flambeau::render::{RenderJob, picture, render_headless, schedule::Limits};
 //! use flambeau::scene::{self, Overrides, VolumeCache};
 //! use flambeau::transport::Frame;
 //!
@@ -53,7 +53,7 @@
 //! let film = render_headless(job, &AtomicBool::new(false), &mut |_, _| {})?.film;
 //!
 //! let mut pixels = Vec::new();
-//! publish::resolve(&film, &mut pixels);
+//! picture::resolve(&film, &mut pixels);
 //! let folder = tempfile::tempdir()?;
 //! png::write(&folder.path().join("fire.png"), size, &pixels, Tone::default())?;
 //! assert!(pixels.iter().any(|[red, _, blue, _]| red > blue), "fire is red");

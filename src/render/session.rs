@@ -18,8 +18,8 @@ pub use sharing::{Sharing, TurnToken};
 
 use super::area::Area;
 use super::film::Film;
+use super::picture::{Extras, Picture};
 use super::pool::{Failure, Pool, Priority};
-use super::publish::{Extras, Picture};
 use crate::error::{Error, Result};
 use crate::transport::PixelSampler;
 use shared::{Improvement, Shared, lock};
@@ -76,8 +76,8 @@ impl Session {
         self.shared.post(|mailbox| mailbox.paused = paused);
     }
 
-    /// Sets what pictures bring along beside their light. It costs a little to read, so it is left out
-    /// unless asked for; asking brings a new picture of what there is, also while paused or
+    /// Sets what pictures bring along beside their light. It costs a little to read, so it is left
+    /// out unless asked for; asking brings a new picture of what there is, also while paused or
     /// finished.
     pub fn set_extras(&self, extras: Extras) {
         self.shared.post(|mailbox| mailbox.extras = extras);
@@ -90,7 +90,7 @@ impl Session {
 
     /// Gives all samples to the pixels of `area` once every pixel has one, or to all pixels, which
     /// catch up. Of another film's size, it is what of it lies on that.
-    pub fn focus(&self, area: Option<Area>) {
+    pub fn render_region_only(&self, area: Option<Area>) {
         self.shared.post(|mailbox| mailbox.area = area);
     }
 

@@ -195,9 +195,9 @@ impl SecondSide {
     }
 
     /// Gives all samples of the second side to the pixels of `area`, or to all pixels.
-    pub fn focus(&mut self, area: Option<Area>) {
+    pub fn render_region_only(&mut self, area: Option<Area>) {
         if let Some(second_render) = &mut self.second_render {
-            second_render.focus(area);
+            second_render.render_region_only(area);
         }
     }
 

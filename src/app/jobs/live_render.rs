@@ -11,7 +11,7 @@ use super::probe_placer::ProbePlacer;
 use super::scene_loader::{LoadJob, LoadOutcome, LoadReport, Loader};
 use crate::app::ui::notices::Notice;
 use crate::error::{Error, Result};
-use crate::render::publish::Extras;
+use crate::render::picture::Extras;
 use crate::render::{Area, Layer, Picture, Resume, Session};
 use crate::scene::settings::FilmSettings;
 use crate::scene::{Note, Settings, VolumeCache};
@@ -261,10 +261,10 @@ impl LiveRender {
     }
 
     /// Gives all samples to the pixels of `area`, or to all pixels.
-    pub fn focus(&mut self, area: Option<Area>) {
+    pub fn render_region_only(&mut self, area: Option<Area>) {
         if self.area != area {
             self.area = area;
-            self.session.focus(area);
+            self.session.render_region_only(area);
         }
     }
 

@@ -82,8 +82,8 @@ impl App {
         self.update_versus();
         let Some(size) = self.film_size() else { return };
         let alone = self.compare.region.alone(size);
-        self.engine.focus(alone);
-        self.compare.second_side.focus(alone);
+        self.engine.render_region_only(alone);
+        self.compare.second_side.render_region_only(alone);
         let mut news = Vec::new();
         let document = &self.editor.document;
         match self.compare.second_side.update(ctx, document, &mut self.engine, size) {

@@ -130,7 +130,7 @@ fn progress(ui: &mut Ui, stats: &RenderStats, engine: &LiveRender, turns: usize)
         (true, _) => "paused",
         (false, false) if engine.held() => "paused while strategies are tried",
         (false, true) => "finished",
-        (false, false) if engine.picture().is_some_and(|picture| picture.focus.is_some()) => {
+        (false, false) if engine.picture().is_some_and(|picture| picture.region.is_some()) => {
             "region only"
         }
         (false, false) => return ending(ui, stats, engine, turns),
@@ -142,7 +142,7 @@ fn progress(ui: &mut Ui, stats: &RenderStats, engine: &LiveRender, turns: usize)
 fn ending(ui: &mut Ui, stats: &RenderStats, engine: &LiveRender, turns: usize) {
     let wanted = engine.built().map_or(0, |built| built.settings.film.spp);
     // A region that gets all samples has another pace than the picture.
-    let is_whole = engine.picture().is_some_and(|picture| picture.focus.is_none());
+    let is_whole = engine.picture().is_some_and(|picture| picture.region.is_none());
     let Some(left) = seconds_left(stats, wanted).filter(|_| is_whole) else { return };
     let left = left * turns.max(1) as f64;
     let text = RichText::new(format!("{} left", time_left(left))).color(color::TEXT_DIM);

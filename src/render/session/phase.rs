@@ -1,5 +1,5 @@
-//! The phases of a request: when it samples, rests, starts over or waits. Pure logic, no threads and
-//! no clocks.
+//! The phases of a request: when it samples, rests, starts over or waits. Pure logic, no threads
+//! and no clocks.
 
 /// The phase that the request being rendered is in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

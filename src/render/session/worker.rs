@@ -12,9 +12,9 @@ use super::shared::{Improvement, Mailbox, Shared, lock};
 use super::sharing::TurnToken;
 use crate::render::area::Area;
 use crate::render::film::Film;
+use crate::render::picture::{Extras, Picture};
 use crate::render::pool::{Failure, Pool};
 use crate::render::progressive::{ProgressiveRender, RenderStep};
-use crate::render::publish::{Extras, Picture};
 use crate::render::turns::Usage;
 
 /// Time that a request without a picture is left to get one when the next already waits. Otherwise
@@ -141,7 +141,7 @@ impl Worker {
         if let Some(request) = request {
             self.begin(request);
         } else if let Some(job) = self.job.as_mut().filter(|_| is_moved) {
-            job.focus(area);
+            job.render_region_only(area);
         }
         if let Some(Improvement { generation, sampler }) = improvement
             && let Some(job) = self.job.as_mut().filter(|job| job.generation == generation)

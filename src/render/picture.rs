@@ -1,4 +1,4 @@
-//! Pictures made from a film for the window to show.
+//! Pictures read from a film: colors, variance, a layer and figures at one time of the render.
 
 use glam::UVec2;
 use rayon::prelude::*;
@@ -22,10 +22,10 @@ pub struct Picture {
     pub layer: LayerMap,
     /// Samples that every pixel has.
     pub fewest_samples: u32,
-    /// Region that gets all samples, and the samples of its pixel that has fewest.
-    pub focus: Option<(Area, u32)>,
-    /// Variance of the gray mean of each pixel, and the variance of that; row 0 on top, NaN below two
-    /// samples; empty unless asked for, and while pixels have no sample.
+    /// The region that alone is rendered, and the samples of its pixel that has fewest.
+    pub region: Option<(Area, u32)>,
+    /// Variance of the gray mean of each pixel, and the variance of that; row 0 on top, NaN below
+    /// two samples; empty unless asked for, and while pixels have no sample.
     pub variance: Vec<[f32; 2]>,
     /// Whether every pixel has at least one sample of its own.
     pub complete: bool,
@@ -39,7 +39,7 @@ pub struct Picture {
 /// The data that a picture brings along beside its light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Extras {
-    /// The layer to publish beside the light.
+    /// The layer to read beside the light.
     pub layer: Option<Layer>,
     /// The variance of its pixels.
     pub variance: bool,
@@ -118,8 +118,8 @@ fn rgba(estimate: &PixelEstimate<'_>, mean: [f64; 3]) -> [f32; 4] {
     [r, g, b, estimate.alpha() as f32]
 }
 
-/// Reads the variance of the gray mean of every pixel and the variance of that into `variance`, which gets the size of the
-/// film. Runs on the threads of the calling pool.
+/// Reads the variance of the gray mean of every pixel and the variance of that into `variance`,
+/// which gets the size of the film. Runs on the threads of the calling pool.
 pub fn resolve_variance(film: &Film, variance: &mut Vec<[f32; 2]>) {
     let size = film.size();
     variance.resize(size.x as usize * size.y as usize, [f32::NAN; 2]);
