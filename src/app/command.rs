@@ -440,7 +440,7 @@ fn key_of(toggle: Toggle) -> Key {
         Toggle::EmissionRatioTracking => Key::Num2,
         Toggle::MajorantBoost => Key::Num3,
         Toggle::FireAsLight => Key::Num4,
-        Toggle::Probes => Key::Num5,
+        Toggle::LightProbes => Key::Num5,
     }
 }
 

@@ -108,6 +108,9 @@ fn the_edited_side_of_a_comparison_takes_a_strategy_over() {
     assert!(window.has("In use: baseline"));
     window.click(Role::Button, "Use: light probes alone");
     let document = window.document();
-    assert_eq!(document.settings.strategy, Toggle::Probes.set(&Preset::Baseline.strategy(), true));
+    assert_eq!(
+        document.settings.strategy,
+        Toggle::LightProbes.set(&Preset::Baseline.strategy(), true)
+    );
     assert_eq!(document.compared.unwrap().other, Preset::Full.strategy());
 }
