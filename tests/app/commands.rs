@@ -108,7 +108,7 @@ fn meant_for(command: Command) -> MeantFor {
         | Command::Start
         | Command::Shortcuts
         | Command::Compare
-        | Command::Rectangle
+        | Command::MeasureRegion
         | Command::LoadReference
         | Command::PictureAsReference
         | Command::Sweep
@@ -131,7 +131,7 @@ fn meant_for(command: Command) -> MeantFor {
         | Command::ContinueSnapshot
         | Command::DeleteSnapshot => MeantFor::SnapshotShown,
         Command::UndoDelete => MeantFor::SnapshotDeleted,
-        Command::SamplesHere => MeantFor::Region,
+        Command::RenderRegionOnly => MeantFor::Region,
         Command::RemoveReference => MeantFor::Referenced,
     }
 }

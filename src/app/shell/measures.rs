@@ -87,8 +87,8 @@ impl App {
             self.compare.second_side.layout.next(&self.compare.layouts());
     }
 
-    /// Gives the region all samples, or all pixels again. Without a region the next drag draws one.
-    pub(super) fn give_region_all_samples(&mut self) {
+    /// Renders the region only, or all pixels again. Without a region the next drag draws one.
+    pub(super) fn toggle_region_only(&mut self) {
         self.compare.region.is_alone = !self.compare.region.is_alone;
         if !self.compare.region.is_set() {
             self.compare.region.arm();

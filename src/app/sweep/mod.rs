@@ -81,7 +81,7 @@ impl Sweep {
     }
 
     /// Asks for a new sweep, or for the results if they are there and were closed.
-    pub fn ask(&mut self, settings: &Settings) {
+    pub fn request(&mut self, settings: &Settings) {
         let known = self.results.as_ref().is_some_and(|results| !results.is_stale(settings));
         self.wanted = self.running.is_none() && (self.open || !known);
         self.open = true;
