@@ -23,7 +23,7 @@ impl App {
             Command::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
             Command::Undo => self.editor.undo(),
             Command::Redo => self.editor.redo(),
-            Command::PauseResume => self.engine.set_paused(!self.engine.paused()),
+            Command::PauseResume => self.live_render.set_paused(!self.live_render.paused()),
             Command::Restart => self.restart(),
             Command::Toggle(toggle) => self.switch(toggle),
             Command::FrameVolume => self.frame_volume(),
@@ -72,7 +72,7 @@ impl App {
 
     /// Discards the samples of every side.
     fn restart(&mut self) {
-        self.engine.restart();
+        self.live_render.restart();
         self.compare.second_side.restart();
     }
 
@@ -160,7 +160,7 @@ impl App {
 
     /// Moves the camera so that everything finite that fills space is in the picture.
     fn frame_volume(&mut self) {
-        let Some(built) = self.engine.built() else { return };
+        let Some(built) = self.live_render.built() else { return };
         let Some(bounds) = built.scene.world.finite_bounds() else { return };
         let size = self.film_size().unwrap_or(UVec2::ONE).as_vec2();
         let camera = &mut self.editor.document.settings.camera;
