@@ -20,7 +20,7 @@
 //! | [`render`] | film, schedule, threads that sample, pictures for the window, two renders compared |
 //! | [`image`] | EXR, PNG, NPY, tone mapping, maps and plots, references, error metrics |
 //! | [`scene`] | scene files: the one settings struct, its keys, parsing, saving, assembling |
-//! | `app` | the window (feature `gui`): one file a panel, commands in one enum, one theme |
+//! | `app` | the window (feature `gui`): panels of settings, a folder for each feature, the shell |
 //! | [`cli`] | the command line: one file a command |
 //!
 //! # A picture
