@@ -8,7 +8,7 @@ use std::sync::{Arc, atomic::AtomicBool};
 
 use flambeau::error::{NO_PROGRESS, Result};
 use flambeau::image::{png, tone::Tone};
-use flambeau::render::{RenderJob, publish, render_headless, schedule::Limits};
+use flambeau::render::{RenderJob, picture, render_headless, schedule::Limits};
 use flambeau::scene::{self, VolumeCache};
 use flambeau::transport::Frame;
 use glam::UVec2;
@@ -26,6 +26,6 @@ fn main() -> Result<()> {
     let film = render_headless(job, &AtomicBool::new(false), &mut |_, _| {})?.film;
 
     let mut pixels = Vec::new();
-    publish::resolve(&film, &mut pixels);
+    picture::resolve(&film, &mut pixels);
     png::write(Path::new(&file), size, &pixels, Tone::default())
 }

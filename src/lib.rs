@@ -21,7 +21,7 @@
 //! | [`render`] | film, schedule, sampling threads, pictures for the window, renders compared |
 //! | [`image`] | EXR, PNG, NPY, tone mapping, maps and plots, references, error metrics |
 //! | [`scene`] | scene files: the one settings struct, its keys, parsing, saving, assembling |
-//! | `app` | the window (feature `gui`): one file a panel, commands in one enum, one theme |
+//! | `app` | the window (feature `gui`): panels of settings, a folder for each feature, the shell |
 //! | [`cli`] | the command line: one file a command |
 //!
 //! # A picture
@@ -33,7 +33,7 @@
 //! use std::{path::Path, sync::{Arc, atomic::AtomicBool}};
 //! use flambeau::error::NO_PROGRESS;
 //! use flambeau::image::{png, tone::Tone};
-//! use flambeau::render::{RenderJob, publish, render_headless, schedule::Limits};
+//! use flambeau::render::{RenderJob, picture, render_headless, schedule::Limits};
 //! use flambeau::scene::{self, Overrides, VolumeCache};
 //! use flambeau::transport::Frame;
 //!
@@ -55,7 +55,7 @@
 //! let film = render_headless(job, &AtomicBool::new(false), &mut |_, _| {})?.film;
 //!
 //! let mut pixels = Vec::new();
-//! publish::resolve(&film, &mut pixels);
+//! picture::resolve(&film, &mut pixels);
 //! let folder = tempfile::tempdir()?;
 //! png::write(&folder.path().join("fire.png"), size, &pixels, Tone::default())?;
 //! assert!(pixels.iter().any(|[red, _, blue, _]| red > blue), "fire is red");

@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 use flambeau::error::NO_PROGRESS;
 use flambeau::math::Rgb;
 use flambeau::render::estimate::{PixelEstimate, gray};
-use flambeau::render::publish::Extras;
+use flambeau::render::picture::Extras;
 use flambeau::render::schedule::Limits;
 use flambeau::render::{
     Film, FilmStats, Headless, Layer, Picture, RenderJob, Request, Resume, Session, render_headless,

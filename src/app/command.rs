@@ -48,8 +48,8 @@ pub enum Command {
     CompareAsA,
     CompareAsB,
     SaveComparison,
-    Rectangle,
-    SamplesHere,
+    MeasureRegion,
+    RenderRegionOnly,
     LoadReference,
     PictureAsReference,
     RemoveReference,
@@ -311,14 +311,14 @@ impl Command {
                 "Save comparison as PNG…",
                 "Save the view of A and B as displayed, with names, legend and figures, as a PNG.",
             ),
-            C::Rectangle => (
+            C::MeasureRegion => (
                 PLAIN,
                 Key::M,
                 "Measure a region",
                 "Drag a region over the picture: its noise, errors and comparison are shown as \
                  well. Escape or a click on the picture removes it.",
             ),
-            C::SamplesHere => (
+            C::RenderRegionOnly => (
                 SHIFT,
                 Key::M,
                 "Render region only",
@@ -440,7 +440,7 @@ fn key_of(toggle: Toggle) -> Key {
         Toggle::EmissionRatioTracking => Key::Num2,
         Toggle::MajorantBoost => Key::Num3,
         Toggle::FireAsLight => Key::Num4,
-        Toggle::Probes => Key::Num5,
+        Toggle::LightProbes => Key::Num5,
     }
 }
 

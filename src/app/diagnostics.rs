@@ -54,16 +54,16 @@ impl Diagnostics {
     }
 
     /// Brings session and cells in line with what is wanted. Called once a frame.
-    pub fn update(&mut self, ctx: &Context, engine: &mut LiveRender) {
-        engine.set_layer(self.wanted.layer);
-        let scene = engine.built().map(|built| built.scene.clone());
+    pub fn update(&mut self, ctx: &Context, live_render: &mut LiveRender) {
+        live_render.set_layer(self.wanted.layer);
+        let scene = live_render.built().map(|built| built.scene.clone());
         let cells = self.wanted.cells.zip(scene.clone()).map(|(value, scene)| {
-            let probes = if value == CellValue::Probes { engine.probes() } else { None };
+            let probes = if value == CellValue::Probes { live_render.probes() } else { None };
             CellSource { value, scene, probes }
         });
         let wake = ctx.clone();
         self.gathering.update(cells, move || wake.request_repaint());
-        self.inspector.update(ctx, self.wanted.ray, engine);
+        self.inspector.update(ctx, self.wanted.ray, live_render);
     }
 
     /// Look of the layer that is wanted in place of `pictures`, once it is there in all of them;

@@ -1,13 +1,19 @@
 //! The window: panels around a picture that refines itself.
 //!
-//! Each folder uses those above it in this list only:
+//! The settings' panels are in `panels`. A feature with a model of its own has a folder, with that
+//! model and its panel; what ties it to the window is in `shell`.
 //!
-//! - `command`: everything that can be asked for; `document`: what is edited, and undo.
+//! The folders are layers, listed here with the lowest first: each uses those above it in this list
+//! only, as `tests/rooms` checks.
+//!
+//! - `command`, a single file: every command of the user.
 //! - `ui`: theme, widgets, sections, notices.
+//! - `document`: the settings that are edited, and undo.
 //! - `jobs`: from edits to pictures, without ever blocking the window.
 //! - `picture`: the picture and the input on it.
 //! - `compare`: two strategies side by side, errors against a reference.
-//! - `snapshots`: stored pictures in a strip; `sweep`: every strategy tried on the shot and ranked.
+//! - `sweep`: every strategy tried on the shot and ranked.
+//! - `snapshots`: stored pictures in a strip.
 //! - `diagnostics`: cells over the picture and maps in its place.
 //! - `panels`: the column of settings.
 //! - `shell`: the window itself.
@@ -71,8 +77,8 @@ fn icon() -> egui::IconData {
     eframe::icon_data::from_png_bytes(png).unwrap_or_default()
 }
 
-/// Opens the window on a scene, a volume or a snapshot (a path or `builtin:NAME`), or on the default scene, and
-/// returns when it is closed.
+/// Opens the window on a scene, a volume or a snapshot (a path or `builtin:NAME`), or on the
+/// default scene, and returns when it is closed.
 ///
 /// # Errors
 /// When there is no display or no graphics adapter, with a hint at what to do.

@@ -11,7 +11,7 @@ use crate::files::{self, check_writable};
 use crate::image::tone::Tone;
 use crate::image::{exr, npy, png};
 use crate::render::Film;
-use crate::render::publish::resolve;
+use crate::render::picture::resolve;
 
 /// The formats of `-o`, by their endings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

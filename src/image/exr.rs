@@ -155,7 +155,7 @@ pub fn read_snapshot_unless(path: &Path, progress: Progress) -> Result<Snapshot>
 }
 
 /// Reads the beauty of a snapshot and leaves the rest: its size and linear RGBA, row 0 on top, to
-/// the bit as [`resolve`](crate::render::publish::resolve) reads it from the film.
+/// the bit as [`resolve`](crate::render::picture::resolve) reads it from the film.
 ///
 /// # Errors
 /// When it cannot be read, was not written by Flambeau, or is damaged.
@@ -356,7 +356,7 @@ mod tests {
             assert_eq!(snapshot.film, film);
             assert_eq!(snapshot.header, header());
             let mut pixels = Vec::new();
-            crate::render::publish::resolve(&film, &mut pixels);
+            crate::render::picture::resolve(&film, &mut pixels);
             assert_eq!(read_picture(&path).unwrap(), (film.size(), pixels));
         }
     }

@@ -1,8 +1,8 @@
-//! Rectangles of pixels, such as the window's region.
+//! A rectangle of pixels, such as the region that is measured in the window.
 
 use glam::UVec2;
 
-/// A rectangle of pixels, such as the window's region.
+/// A rectangle of pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Area {
     /// First pixel, in the upper left corner.
@@ -17,12 +17,12 @@ const BLOCKS_ACROSS: u32 = 8;
 const SMALLEST_BLOCK: u32 = 16;
 
 impl Area {
-    /// The region of a whole film of size `film`.
+    /// The area of a whole film of `size`.
     pub fn of(size: UVec2) -> Self {
         Self { first: UVec2::ZERO, size }
     }
 
-    /// The part of the region that lies on a film of size `film`.
+    /// The part of the area that lies on a film of size `film`.
     #[must_use]
     pub fn within(&self, film: UVec2) -> Self {
         let first = self.first.min(film);

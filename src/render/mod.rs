@@ -2,7 +2,7 @@
 //!
 //! - [`film`]: per-pixel sums in independent accumulators, stored so that a render can be continued
 //!   bit for bit; [`area`]: rectangular regions of its pixels; [`layers`]: its layers (AOVs).
-//! - [`estimate`]: means and variances of a film; [`publish`]: whole pictures read from it.
+//! - [`estimate`]: means and variances of a film; [`picture`]: whole pictures read from it.
 //! - [`coarse`]: blocks that one pixel stands for while the others have no samples.
 //! - [`schedule`]: pure logic from what is done and what it cost to the next piece of work.
 //! - [`pool`]: the threads, which do one piece of work; `thread_time`: their CPU time.
@@ -21,9 +21,9 @@ pub mod estimate;
 pub mod film;
 pub mod headless;
 pub mod layers;
+pub mod picture;
 pub mod pool;
 pub mod progressive;
-pub mod publish;
 pub mod schedule;
 pub mod session;
 pub mod side_by_side;
@@ -37,8 +37,8 @@ pub use estimate::FilmStats;
 pub use film::Film;
 pub use headless::{Headless, RenderJob, render_headless};
 pub use layers::{Layer, LayerMap};
+pub use picture::{Picture, RenderStats};
 pub use pool::Failure;
-pub use publish::{Picture, RenderStats};
 pub use session::{Request, Resume, Session};
 
 #[cfg(test)]

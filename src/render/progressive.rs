@@ -6,10 +6,10 @@ use std::time::Instant;
 use super::area::Area;
 use super::estimate::samples_per_pixel;
 use super::film::Film;
-use super::pool::{Failure, Pool};
-use super::publish::{
+use super::picture::{
     Extras, Picture, RenderStats, render_stats, resolve, resolve_blocks, resolve_variance,
 };
+use super::pool::{Failure, Pool};
 use super::schedule::{Limits, Next, Schedule};
 use crate::transport::{PixelSampler, Prepared};
 
@@ -68,7 +68,7 @@ impl ProgressiveRender {
     }
 
     /// Gives all samples to the pixels of `area` once every pixel has one, or to all pixels.
-    pub fn focus(&mut self, area: Option<Area>) {
+    pub fn render_region_only(&mut self, area: Option<Area>) {
         let film = &self.film;
         let area = area.map(|area| area.within(film.size())).filter(|area| area.pixels() > 0);
         if std::mem::replace(&mut self.area, area) == area {
@@ -78,7 +78,7 @@ impl ProgressiveRender {
             Some(area) => film.fewest_samples(area),
             None => film.sample_range().0,
         };
-        self.schedule.focus(self.area, passes);
+        self.schedule.render_region_only(self.area, passes);
     }
 
     /// Throws the samples away and begins again with another sampler.
@@ -87,7 +87,7 @@ impl ProgressiveRender {
         self.begun_empty = true;
         let (limits, cost) = (self.schedule.limits(), self.schedule.seconds_per_path());
         self.schedule = Schedule::new(self.film.size(), 0, limits, cost);
-        self.schedule.focus(self.area, 0);
+        self.schedule.render_region_only(self.area, 0);
         (self.seconds, self.cpu_seconds) = (0.0, 0.0);
         self.go_on_with(sampler);
     }
@@ -173,7 +173,7 @@ impl ProgressiveRender {
         (picture.size, picture.complete) = (self.film.size(), is_complete);
         picture.block_log2 = blocks.ilog2();
         picture.fewest_samples = self.film.sample_range().0;
-        picture.focus = self.area.map(|area| (area, self.film.fewest_samples(area)));
+        picture.region = self.area.map(|area| (area, self.film.fewest_samples(area)));
         picture.stats = RenderStats {
             cpu_seconds: self.cpu_seconds,
             guided_flights: self.prepared.and_then(|prepared| prepared.guided_flights()),

@@ -114,10 +114,10 @@ impl Schedule {
         }
     }
 
-    /// Gives all samples to the pixels of `area`, some of the film's, which have `passes` samples
-    /// or more, or to all pixels. The first pass goes over the whole film all the same, so that
-    /// there is a picture.
-    pub fn focus(&mut self, area: Option<Area>, passes: u32) {
+    /// Gives all samples to the pixels of `area`, which lies on the film and whose pixels have
+    /// `passes` samples or more, or to all pixels. The first pass goes over the whole film all the
+    /// same, so that there is a picture.
+    pub fn render_region_only(&mut self, area: Option<Area>, passes: u32) {
         self.area = area;
         if self.passes > 0 {
             self.passes = passes.max(1);
@@ -145,7 +145,7 @@ impl Schedule {
         }
         let last = self.next_tile + self.tiles_within(seconds);
         let tiles = self.next_tile..last.min(band.end);
-        let area = self.focused_area();
+        let area = self.sampled_region();
         Next::Work(Work { stride: self.stride, target: self.target, tiles, area })
     }
 
@@ -235,14 +235,14 @@ impl Schedule {
     }
 
     /// Region that gets all samples now; `None` while the whole film does.
-    fn focused_area(&self) -> Option<Area> {
+    fn sampled_region(&self) -> Option<Area> {
         self.area.filter(|_| self.passes > 0)
     }
 
     /// The tiles that get samples now: whole rows of them.
     fn band(&self) -> Range<usize> {
         let across = self.size.x.div_ceil(TILE) as usize;
-        let rows = match self.focused_area() {
+        let rows = match self.sampled_region() {
             Some(area) => area.first.y / TILE..(area.first.y + area.size.y).div_ceil(TILE),
             None => 0..self.size.y.div_ceil(TILE),
         };
@@ -251,7 +251,7 @@ impl Schedule {
 
     /// The number of pixels that get samples now.
     fn pixels(&self) -> f64 {
-        self.focused_area().unwrap_or(Area::of(self.size)).pixels() as f64
+        self.sampled_region().unwrap_or(Area::of(self.size)).pixels() as f64
     }
 
     fn most_samples(&self) -> u32 {
@@ -288,7 +288,7 @@ impl Schedule {
         let tiles = self.band().len();
         let Some(cost) = self.seconds_per_path else { return tiles.div_ceil(8) };
         let passes = f64::from(self.target - self.passes);
-        let pixels = match self.focused_area() {
+        let pixels = match self.sampled_region() {
             Some(_) => self.pixels() / tiles as f64,
             None => TILE_PIXELS as f64,
         };
@@ -429,15 +429,15 @@ mod tests {
             |index: usize| area.contains(UVec2::new(index as u32 % SIZE.x, index as u32 / SIZE.x));
         let mut counts = vec![0; (SIZE.x * SIZE.y) as usize];
         let mut schedule = Schedule::new(SIZE, 0, spp(6), None);
-        schedule.focus(Some(area), 0);
+        schedule.render_region_only(Some(area), 0);
         let works = play(&mut schedule, &mut counts, 1e-4, 0.0);
         for (index, &count) in counts.iter().enumerate() {
             assert_eq!(count, if inside(index) { 6 } else { 1 }, "pixel {index}");
         }
-        let focused = works.iter().filter(|work| work.area.is_some());
-        assert!(focused.clone().count() > 1 && focused.clone().all(|work| work.target > 1));
-        assert!(focused.clone().all(|work| work.tiles.start >= 7 && work.tiles.end <= 21));
-        schedule.focus(None, 1);
+        let of_region = works.iter().filter(|work| work.area.is_some());
+        assert!(of_region.clone().count() > 1 && of_region.clone().all(|work| work.target > 1));
+        assert!(of_region.clone().all(|work| work.tiles.start >= 7 && work.tiles.end <= 21));
+        schedule.render_region_only(None, 1);
         play(&mut schedule, &mut counts, 1e-4, 0.0);
         assert!(counts.iter().all(|&count| count == 6));
     }

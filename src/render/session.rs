@@ -22,8 +22,8 @@ pub use sharing::{Sharing, TurnToken};
 
 use super::area::Area;
 use super::film::Film;
+use super::picture::{Extras, Picture};
 use super::pool::{Failure, Pool, Priority};
-use super::publish::{Extras, Picture};
 use crate::error::{Error, Result};
 use crate::transport::PixelSampler;
 use shared::{Improvement, Shared, lock};
@@ -80,9 +80,9 @@ impl Session {
         self.shared.post(|mailbox| mailbox.paused = paused);
     }
 
-    /// Sets which data pictures bring along beside their light. To read it costs a little, so it is
-    /// left out unless asked for; asking brings a new picture of the samples there are, also while
-    /// paused or finished.
+    /// Sets what pictures bring along beside their light. It costs a little to read, so it is left
+    /// out unless asked for; asking brings a new picture of what there is, also while paused or
+    /// finished.
     pub fn set_extras(&self, extras: Extras) {
         self.shared.post(|mailbox| mailbox.extras = extras);
     }
@@ -92,10 +92,9 @@ impl Session {
         self.shared.post(|mailbox| mailbox.turn_token = token);
     }
 
-    /// Gives all samples to the pixels of `area` once every pixel has one, or, with `None`, to all
-    /// pixels, of which those outside catch up first. On a film of another size, the part of `area`
-    /// that lies on the film counts.
-    pub fn focus(&self, area: Option<Area>) {
+    /// Gives all samples to the pixels of `area` once every pixel has one, or to all pixels, which
+    /// catch up. Of another film's size, it is what of it lies on that.
+    pub fn render_region_only(&self, area: Option<Area>) {
         self.shared.post(|mailbox| mailbox.area = area);
     }
 

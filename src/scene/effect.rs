@@ -17,7 +17,7 @@ pub fn no_effect(toggle: Toggle, settings: &Settings) -> Option<&'static str> {
     if strategy.marches() && toggle != Toggle::FireAsLight {
         return Some(MARCHING);
     }
-    if toggle == Toggle::Probes {
+    if toggle == Toggle::LightProbes {
         return probes_without_effect(settings);
     }
     if !settings.volume.iter().any(emits) {
@@ -40,7 +40,7 @@ pub fn no_effect(toggle: Toggle, settings: &Settings) -> Option<&'static str> {
         Toggle::FireAsLight if !turns_light(settings) => {
             Some("nothing in this scene scatters or reflects light, so fire is only seen directly.")
         }
-        Toggle::FireAsLight | Toggle::Probes => None,
+        Toggle::FireAsLight | Toggle::LightProbes => None,
     }
 }
 
@@ -212,7 +212,7 @@ mod tests {
             Toggle::EmissionDecoupling,
             Toggle::EmissionRatioTracking,
             Toggle::MajorantBoost,
-            Toggle::Probes,
+            Toggle::LightProbes,
         ] {
             assert!(no_effect(toggle, &settings).unwrap().contains("ray marching"), "{toggle:?}");
         }

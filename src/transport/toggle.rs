@@ -1,4 +1,12 @@
-//! The toggles of a [`Strategy`], one by one.
+//! The toggles of a [`Strategy`], one by one. A variant is the label of the window as one word.
+//!
+//! | key in `[strategy]` | label | term of the literature |
+//! |---|---|---|
+//! | `emission_decoupling` | Emission decoupling | collision estimator of the emission |
+//! | `emission_ratio_tracking` | Emission ratio tracking | line integration by ratio tracking |
+//! | `majorant_boost` | Majorant boost | importance sampling of the emission |
+//! | `nee` | Fire as a light | next-event estimation to emissive volumes, with MIS |
+//! | `probe_mis` | Light probes | path guiding with splitting and Russian roulette |
 
 use strum::{EnumIter, IntoEnumIterator};
 
@@ -17,7 +25,7 @@ pub enum Toggle {
     /// `nee`.
     FireAsLight,
     /// `probe_mis`.
-    Probes,
+    LightProbes,
 }
 
 impl Toggle {
@@ -33,7 +41,7 @@ impl Toggle {
             Self::EmissionRatioTracking => "Emission ratio tracking",
             Self::MajorantBoost => "Majorant boost",
             Self::FireAsLight => "Fire as a light",
-            Self::Probes => "Light probes",
+            Self::LightProbes => "Light probes",
         }
     }
 
@@ -44,7 +52,7 @@ impl Toggle {
             Self::EmissionRatioTracking => "strategy.emission_ratio_tracking",
             Self::MajorantBoost => "strategy.majorant_boost",
             Self::FireAsLight => "strategy.nee",
-            Self::Probes => "strategy.probe_mis",
+            Self::LightProbes => "strategy.probe_mis",
         }
     }
 
@@ -55,7 +63,7 @@ impl Toggle {
             Self::EmissionRatioTracking => &mut strategy.emission_ratio_tracking,
             Self::MajorantBoost => &mut strategy.majorant_boost,
             Self::FireAsLight => &mut strategy.nee,
-            Self::Probes => &mut strategy.probe_mis,
+            Self::LightProbes => &mut strategy.probe_mis,
         }
     }
 

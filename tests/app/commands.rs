@@ -108,7 +108,7 @@ fn meant_for(command: Command) -> MeantFor {
         | Command::Start
         | Command::Shortcuts
         | Command::Compare
-        | Command::Rectangle
+        | Command::MeasureRegion
         | Command::LoadReference
         | Command::PictureAsReference
         | Command::Sweep
@@ -131,7 +131,7 @@ fn meant_for(command: Command) -> MeantFor {
         | Command::ContinueSnapshot
         | Command::DeleteSnapshot => MeantFor::SnapshotShown,
         Command::UndoDelete => MeantFor::SnapshotDeleted,
-        Command::SamplesHere => MeantFor::Region,
+        Command::RenderRegionOnly => MeantFor::Region,
         Command::RemoveReference => MeantFor::Referenced,
     }
 }
@@ -149,7 +149,7 @@ struct Seen {
 
 impl Window {
     fn see(&self, asked: &[ViewportCommand]) -> Seen {
-        let picture = self.app().engine().picture();
+        let picture = self.app().live_render().picture();
         Seen {
             screen: format!("{:?}", self.harness.root()),
             text_size: self.harness.ctx.zoom_factor(),
@@ -208,13 +208,13 @@ impl Window {
             self.until("the sweep has ended", |app| !app.sweep().is_running());
         }
         self.until("everything asked for has arrived", |app| {
-            app.engine().opening().is_none() && !app.reference().is_loading()
+            app.live_render().opening().is_none() && !app.reference().is_loading()
         });
         while self.has("Keeping…") {
             self.settle();
         }
         self.close_what_is_open();
-        if self.app().engine().paused() {
+        if self.app().live_render().paused() {
             self.press(Modifiers::NONE, Key::Space);
         }
         if self.app().reference().loaded().is_some() {
@@ -326,7 +326,11 @@ fn every_key_is_taken_while_strategies_and_snapshots_are_compared() {
             if window.harness.query_by_role_and_label(Role::TextInput, "Path").is_some() {
                 window.close_what_is_open();
             }
-            assert!(window.app().engine().picture().is_some(), "{state:?}, {}", command.text());
+            assert!(
+                window.app().live_render().picture().is_some(),
+                "{state:?}, {}",
+                command.text()
+            );
         }
     }
 }

@@ -14,12 +14,12 @@ impl Window {
     /// Runs frames until both sides have finished their few samples and are compared.
     pub(super) fn until_compared(&mut self) {
         self.until("both sides are compared", |app| {
-            let finished = |engine: &flambeau::app::LiveRender| {
-                let latest = engine.is_current() && !engine.is_building();
-                latest && engine.picture().is_some_and(|picture| picture.stats.finished)
+            let finished = |live_render: &flambeau::app::LiveRender| {
+                let latest = live_render.is_current() && !live_render.is_building();
+                latest && live_render.picture().is_some_and(|picture| picture.stats.finished)
             };
-            let both =
-                finished(app.engine()) && app.second_side().second_render().is_some_and(finished);
+            let both = finished(app.live_render())
+                && app.second_side().second_render().is_some_and(finished);
             let spp = app.editor().document.settings.film.spp;
             let all = |comparison: &flambeau::render::compare::Comparison| {
                 comparison.sides.iter().all(|side| side.fewest_samples == spp)
@@ -40,12 +40,12 @@ fn open() -> Option<Window> {
 fn a_key_sets_the_strategy_against_the_baseline_and_tells_how_much_it_brings() {
     let Some(mut window) = open() else { return };
     window.until_finished();
-    let picture = window.app().engine().picture().unwrap().generation;
+    let picture = window.app().live_render().picture().unwrap().generation;
     window.press(Modifiers::NONE, Key::C);
     assert!(window.has("A  Baseline") && window.has("B  Full"));
     window.until_compared();
     assert_eq!(
-        window.app().engine().picture().unwrap().generation,
+        window.app().live_render().picture().unwrap().generation,
         picture,
         "what was rendered before goes on"
     );
@@ -115,7 +115,7 @@ fn layers_are_compared_and_maps_go_before_them() {
     window.click(Role::ComboBox, "Layer");
     window.click(Role::Button, Layer::Steps.name());
     window.until("both sides bring the layer", |app| {
-        let pictures = app.second_side().pictures(app.engine()).unwrap();
+        let pictures = app.second_side().pictures(app.live_render()).unwrap();
         pictures.iter().all(|picture| picture.layer.layer == Some(Layer::Steps))
     });
     assert!(window.has("Tracking steps per sample") && window.has("Layer: "));
@@ -149,10 +149,10 @@ fn edits_of_the_scene_go_to_both_sides() {
     let Some(mut window) = open() else { return };
     window.press(Modifiers::NONE, Key::C);
     window.until_compared();
-    let before = window.app().second_side().pictures(window.app().engine()).unwrap();
+    let before = window.app().second_side().pictures(window.app().live_render()).unwrap();
     window.press(Modifiers::NONE, Key::F);
     window.until_compared();
-    let after = window.app().second_side().pictures(window.app().engine()).unwrap();
+    let after = window.app().second_side().pictures(window.app().live_render()).unwrap();
     for side in 0..2 {
         assert_ne!(before[side].pixels, after[side].pixels);
     }
@@ -170,8 +170,8 @@ fn what_is_opened_ends_the_comparison() {
     window.press(Modifiers::COMMAND, Key::L);
     window.type_path(path.to_str().unwrap());
     window.until("the snapshot is open", |app| app.editor().document.compared.is_none());
-    window.until("it has a picture", |app| app.engine().is_current());
-    let engine = window.app().engine();
+    window.until("it has a picture", |app| app.live_render().is_current());
+    let live_render = window.app().live_render();
     assert!(window.app().second_side().second_render().is_none());
-    assert!(engine.picture().unwrap().stats.samples_per_pixel >= 16.0, "all are still there");
+    assert!(live_render.picture().unwrap().stats.samples_per_pixel >= 16.0, "all are still there");
 }

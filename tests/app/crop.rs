@@ -17,7 +17,7 @@ fn open() -> Option<Window> {
 }
 
 fn film(window: &Window) -> Film {
-    window.app().engine().session().snapshot().recv().unwrap()
+    window.app().live_render().session().snapshot().recv().unwrap()
 }
 
 fn until_fewest(window: &mut Window, area: Area, samples: u32) {
@@ -38,7 +38,7 @@ fn outside(film: &Film, area: Area) -> (u32, u32) {
 #[test]
 fn all_samples_go_to_the_rectangle_and_back_to_all() {
     let Some(mut window) = open() else { return };
-    window.until("there is a picture", |app| app.engine().picture().is_some());
+    window.until("there is a picture", |app| app.live_render().picture().is_some());
     window.press(Modifiers::SHIFT, Key::M);
     assert!(window.has("Drag a region over the picture."), "there has to be one first");
     window.click(Role::Button, "Place it");

@@ -143,12 +143,12 @@ fn the_map_of_steps_colors_each_pixel_by_what_it_costs() {
     window.click(Role::DisclosureTriangle, "Diagnostics");
     window.click(Role::CheckBox, "Map of tracking steps");
     window.until("the steps are there", |app| {
-        app.engine().picture().is_some_and(|picture| !picture.layer.numbers.is_empty())
+        app.live_render().picture().is_some_and(|picture| !picture.layer.numbers.is_empty())
     });
     window.harness.remove_cursor();
     window.settle();
     let title = window.harness.get_by_label("Tracking steps per sample").rect();
-    let picture = window.app().engine().picture().unwrap().clone();
+    let picture = window.app().live_render().picture().unwrap().clone();
     let scale = Scale::rounded(picture.layer.range.unwrap());
     let area = window.harness.get_by_role_and_label(Role::Image, "Picture").rect();
     let shown = window.harness.render().unwrap();

@@ -47,7 +47,7 @@ fn assert_shown(window: &mut Window, pixels: &[[f32; 4]], tone: Tone) {
 #[test]
 fn every_curve_balance_and_channel_is_that_of_saved_pictures() {
     let Some(mut window) = open() else { return };
-    let pixels = window.app().engine().picture().unwrap().pixels.clone();
+    let pixels = window.app().live_render().picture().unwrap().pixels.clone();
     assert_shown(&mut window, &pixels, Tone::default());
     for (curve, name) in [(ToneCurve::Agx, "AgX"), (ToneCurve::Linear, "Linear")] {
         window.press(Modifiers::NONE, Key::T);
@@ -72,7 +72,7 @@ fn every_curve_balance_and_channel_is_that_of_saved_pictures() {
 #[test]
 fn white_balance_is_set_undone_and_that_of_saved_pictures() {
     let Some(mut window) = open() else { return };
-    let pixels = window.app().engine().picture().unwrap().pixels.clone();
+    let pixels = window.app().live_render().picture().unwrap().pixels.clone();
     let slider = window.harness.get_by_role_and_label(Role::Slider, "White balance");
     slider.set_value_accesskit(2500.0);
     window.settle();
@@ -91,7 +91,7 @@ fn white_balance_is_set_undone_and_that_of_saved_pictures() {
 #[test]
 fn a_key_exposes_for_the_picture() {
     let Some(mut window) = open() else { return };
-    let pixels = window.app().engine().picture().unwrap().pixels.clone();
+    let pixels = window.app().live_render().picture().unwrap().pixels.clone();
     let exposure = auto_exposure(&pixels).unwrap();
     assert_ne!(exposure, 0.0);
     window.press(Modifiers::NONE, Key::A);
@@ -111,20 +111,20 @@ fn layers_take_the_place_of_the_picture() {
         window.click(Role::ComboBox, "Layer");
         window.click(Role::Button, layer.name());
         window.until("the layer is there", |app| {
-            app.engine().picture().is_some_and(|picture| picture.layer.layer == Some(layer))
+            app.live_render().picture().is_some_and(|picture| picture.layer.layer == Some(layer))
         });
         window.settle();
         match legend {
             Some(legend) => assert!(window.has(legend), "{layer:?}"),
             None => {
-                let light = window.app().engine().picture().unwrap().layer.light.clone();
+                let light = window.app().live_render().picture().unwrap().layer.light.clone();
                 assert_shown(&mut window, &light, Tone::default());
             }
         }
     }
     window.click(Role::ComboBox, "Layer");
     window.click(Role::Button, "Beauty");
-    let pixels = window.app().engine().picture().unwrap().pixels.clone();
+    let pixels = window.app().live_render().picture().unwrap().pixels.clone();
     assert_shown(&mut window, &pixels, Tone::default());
 }
 
@@ -138,7 +138,7 @@ fn a_list_closes_with_the_key_that_chooses() {
     window.settle();
     window.press(Modifiers::NONE, Key::Enter);
     window.until("the layer is there", |app| {
-        app.engine().picture().is_some_and(|picture| picture.layer.layer == Some(Layer::Depth))
+        app.live_render().picture().is_some_and(|picture| picture.layer.layer == Some(Layer::Depth))
     });
     assert!(window.harness.query_by_role_and_label(Role::Button, Layer::Noise.name()).is_none());
 }
@@ -150,9 +150,9 @@ fn a_coarse_picture_shows_its_blocks() {
     window.press(Modifiers::NONE, Key::Space);
     window.press(Modifiers::NONE, Key::Num1);
     window.until("the coarse picture is there", |app| {
-        app.engine().picture().is_some_and(|picture| !picture.complete)
+        app.live_render().picture().is_some_and(|picture| !picture.complete)
     });
-    let picture = window.app().engine().picture().unwrap().clone();
+    let picture = window.app().live_render().picture().unwrap().clone();
     let side = 1 << picture.block_log2;
     assert!(side > 1, "the picture is not of blocks");
     for (index, pixel) in picture.pixels.iter().enumerate() {

@@ -15,7 +15,7 @@ fn bounces_are_typed_and_a_double_click_on_the_name_takes_them_back() {
     window.settle();
     assert_eq!(bounces(&window), 2);
     window.until("the edit is built", |app| {
-        app.engine().built().is_some_and(|built| built.settings.path.max_scatters == 2)
+        app.live_render().built().is_some_and(|built| built.settings.path.max_scatters == 2)
     });
     let name = window.harness.get_by_role_and_label(Role::Label, "Max bounces").rect().center();
     window.harness.hover_at(name);

@@ -10,7 +10,7 @@ fn with_light(kind: &str) -> Option<Window> {
     window.click(Role::DisclosureTriangle, "Lights");
     window.click(Role::Button, kind);
     // There are handles only where there is a picture.
-    window.until("there is a picture", |app| app.engine().picture().is_some());
+    window.until("there is a picture", |app| app.live_render().picture().is_some());
     Some(window)
 }
 
@@ -21,7 +21,7 @@ fn lights(window: &Window) -> &[LightSettings] {
 /// Runs frames until what was edited is what is rendered.
 fn until_accepted(window: &mut Window) {
     window.until("the edit is built", |app| {
-        let built = app.engine().built().map(|built| &built.settings.light);
+        let built = app.live_render().built().map(|built| &built.settings.light);
         built == Some(&app.editor().document.settings.light)
     });
     assert!(window.app().notices().list().is_empty(), "{:?}", window.app().notices().list());

@@ -132,10 +132,10 @@ impl Window {
 
     fn until_finished(&mut self) {
         self.until("the picture is finished", |app| {
-            let engine = app.engine();
+            let live_render = app.live_render();
             // Until a change is built, the picture of before is the latest.
-            let latest = engine.is_current() && !engine.is_building();
-            latest && engine.picture().is_some_and(|picture| picture.stats.finished)
+            let latest = live_render.is_current() && !live_render.is_building();
+            latest && live_render.picture().is_some_and(|picture| picture.stats.finished)
         });
     }
 
@@ -359,7 +359,7 @@ fn a_tracker_is_offered_where_it_may_be_used_and_gives_way() {
 fn a_slider_restarts_the_render_and_undo_brings_the_value_back() {
     let Some(mut window) = Window::open(BALL) else { return };
     window.until_finished();
-    let before = window.app().engine().picture().unwrap().generation;
+    let before = window.app().live_render().picture().unwrap().generation;
     let density = |window: &Window| window.document().settings.volume[0].density.scale.gray();
     assert_eq!(density(&window), Some(2.0));
 
@@ -369,7 +369,7 @@ fn a_slider_restarts_the_render_and_undo_brings_the_value_back() {
     window.settle();
     assert_eq!(density(&window), Some(5.0));
     window.until("a new render is shown", |app| {
-        app.engine().picture().is_some_and(|picture| picture.generation > before)
+        app.live_render().picture().is_some_and(|picture| picture.generation > before)
     });
     assert_eq!(window.app().editor().undo_name(), Some("density"));
 
@@ -460,22 +460,22 @@ fn pause_holds_the_samples_and_restart_throws_them_away() {
     let endless = BALL.replace("spp = 4", "spp = 0");
     let Some(mut window) = Window::open(&endless) else { return };
     window.until("there are samples", |app| {
-        app.engine().picture().is_some_and(|picture| picture.stats.samples_per_pixel > 2.0)
+        app.live_render().picture().is_some_and(|picture| picture.stats.samples_per_pixel > 2.0)
     });
     window.press(Modifiers::NONE, Key::Space);
-    assert!(window.app().engine().paused());
+    assert!(window.app().live_render().paused());
     std::thread::sleep(Duration::from_millis(200));
     window.settle();
-    let held = window.app().engine().picture().unwrap().clone();
+    let held = window.app().live_render().picture().unwrap().clone();
     std::thread::sleep(Duration::from_millis(200));
     window.settle();
-    assert!(Arc::ptr_eq(&held, window.app().engine().picture().unwrap()));
+    assert!(Arc::ptr_eq(&held, window.app().live_render().picture().unwrap()));
 
     window.click(Role::Button, "Resume");
-    assert!(!window.app().engine().paused());
+    assert!(!window.app().live_render().paused());
     window.press(Modifiers::NONE, Key::R);
     window.until("a new render is shown", |app| {
-        app.engine().picture().is_some_and(|picture| picture.generation > held.generation)
+        app.live_render().picture().is_some_and(|picture| picture.generation > held.generation)
     });
 }
 
@@ -502,7 +502,7 @@ fn saved_files_hold_what_is_shown() {
     let Some(mut window) = Window::open(BALL) else { return };
     window.click(Role::Button, "Fixed");
     window.until_finished();
-    let size = window.app().engine().picture().unwrap().size;
+    let size = window.app().live_render().picture().unwrap().size;
     assert_eq!(size.to_array(), [64, 48]);
 
     let exr = window.save(Modifiers::COMMAND, "picture.exr");

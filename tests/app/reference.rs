@@ -13,7 +13,7 @@ use super::*;
 
 impl Window {
     fn picture(&self) -> Arc<Picture> {
-        self.app().engine().picture().unwrap().clone()
+        self.app().live_render().picture().unwrap().clone()
     }
 
     /// The place in the window of a picture position, of a picture that is fitted alone.
@@ -133,7 +133,7 @@ fn both_sides_are_compared_in_the_rectangle_too() {
         part.is_some_and(|part| part.area == area && part.comparison.is_some())
     });
     let app = window.app();
-    let [a, b] = app.second_side().pictures(app.engine()).unwrap();
+    let [a, b] = app.second_side().pictures(app.live_render()).unwrap();
     let expected = Comparison::of_pictures([&a, &b], Some(area));
     let part = app.second_side().region_figures().unwrap();
     assert_eq!(part.comparison.as_ref(), Some(&expected));
@@ -297,7 +297,7 @@ fn a_snapshot_is_one_side_against_the_live_picture() {
     window.click(Role::Button, "Compare as A");
     window.until("both are compared", |app| app.second_side().comparison().is_some());
     assert!(window.has("A  Snapshot scene full") && window.has("B  Live: baseline"));
-    let [a, b] = window.app().second_side().pictures(window.app().engine()).unwrap();
+    let [a, b] = window.app().second_side().pictures(window.app().live_render()).unwrap();
     assert_eq!(b.pixels, live.pixels);
     assert_ne!(a.pixels, live.pixels);
     assert!(a.stats.cpu_seconds > 0.0, "its CPU time was kept");
@@ -316,8 +316,8 @@ fn a_snapshot_is_one_side_against_the_live_picture() {
     // Flipping goes on to the next snapshot, and no further.
     window.press(Modifiers::NONE, Key::ArrowRight);
     window.until_it_says("A  Snapshot scene baseline");
-    window.until("it is read", |app| app.second_side().pictures(app.engine()).is_some());
-    let [a, _] = window.app().second_side().pictures(window.app().engine()).unwrap();
+    window.until("it is read", |app| app.second_side().pictures(app.live_render()).is_some());
+    let [a, _] = window.app().second_side().pictures(window.app().live_render()).unwrap();
     assert_eq!(a.pixels, live.pixels);
     window.press(Modifiers::NONE, Key::ArrowRight);
     assert!(window.has("A  Snapshot scene baseline"));
@@ -346,7 +346,7 @@ fn a_snapshot_of_another_size_offers_its_size() {
     window.keep("scene full");
     window.click(Role::Button, "Window size");
     window.until("the film is that of the window", |app| {
-        app.engine().picture().is_some_and(|picture| picture.size.x > 400)
+        app.live_render().picture().is_some_and(|picture| picture.size.x > 400)
     });
     window.press(Modifiers::NONE, Key::ArrowLeft);
     window.press(Modifiers::SHIFT, Key::B);
@@ -406,7 +406,7 @@ fn a_comparison_is_saved_with_names_and_figures() {
     };
     let wipe = save(&mut window, "wipe.png");
     let app = window.app();
-    let [a, b] = app.second_side().pictures(app.engine()).unwrap();
+    let [a, b] = app.second_side().pictures(app.live_render()).unwrap();
     let tone = app.editor().document.tone;
     // Enlarged 20 times to 640 pixels; the divider in the middle.
     assert_eq!(wipe.width(), 640);

@@ -110,7 +110,7 @@ fn a_kept_picture_is_flipped_to_against_the_live_one() {
     let live = window.shown_without_cursor();
     assert!(!same(&kept, &live));
 
-    let generation = window.app().engine().picture().unwrap().generation;
+    let generation = window.app().live_render().picture().unwrap().generation;
     window.press(Modifiers::NONE, Key::ArrowLeft);
     assert!(window.has("Snapshot: scene full, 4.0 spp"));
     assert!(same(&kept, &window.shown_without_cursor()));
@@ -124,7 +124,7 @@ fn a_kept_picture_is_flipped_to_against_the_live_one() {
     window.press(Modifiers::NONE, Key::ArrowLeft);
     window.press(Modifiers::NONE, Key::Escape);
     assert!(!window.has("Snapshot: ") && same(&live, &window.shown_without_cursor()));
-    assert_eq!(window.app().engine().picture().unwrap().generation, generation);
+    assert_eq!(window.app().live_render().picture().unwrap().generation, generation);
 
     // What is shown is what is saved, until an edit asks for the live picture again.
     window.press(Modifiers::NONE, Key::ArrowLeft);
@@ -140,8 +140,8 @@ fn a_kept_picture_is_flipped_to_against_the_live_one() {
 fn the_strip_comes_and_goes_without_a_new_render() {
     let endless = BALL.replace("spp = 4", "spp = 0");
     let Some(mut window) = Window::open(&endless) else { return };
-    window.until("there is a picture", |app| app.engine().is_current());
-    let generation = |window: &Window| window.app().engine().picture().unwrap().generation;
+    window.until("there is a picture", |app| app.live_render().is_current());
+    let generation = |window: &Window| window.app().live_render().picture().unwrap().generation;
     let height = |window: &Window| {
         window.harness.get_by_role_and_label(Role::Image, "Picture").rect().height()
     };
@@ -225,8 +225,8 @@ fn a_snapshot_of_the_strip_is_gone_on_from() {
     );
     assert_eq!(window.document().settings.volume[0].density.scale.gray(), Some(2.0));
     window.until("samples are added", |app| {
-        let picture = app.engine().picture();
-        app.engine().is_current()
+        let picture = app.live_render().picture();
+        app.live_render().is_current()
             && picture.is_some_and(|picture| picture.stats.samples_per_pixel > 5.0)
     });
 }
@@ -243,7 +243,7 @@ fn a_reopened_snapshot_goes_on_to_the_uninterrupted_film() {
     window.type_path(path.to_str().unwrap());
     window.until_it_says("half.exr: resumed from 3 spp.");
     window.until_finished();
-    let stats = window.app().engine().picture().unwrap().stats;
+    let stats = window.app().live_render().picture().unwrap().stats;
     assert!(stats.samples_per_pixel == 8.0 && stats.seconds > 1000.0, "{stats:?}");
     assert_eq!(window.document().settings, settings);
     let whole = window.save(Modifiers::COMMAND, "whole.exr");

@@ -12,9 +12,10 @@ impl Window {
     /// The factor between both sides' times for the same noise, once it is known.
     fn until_compared_anew(&mut self, told: &str) -> Comparison {
         self.until("both sides are compared", |app| {
-            let is_current =
-                |engine: &flambeau::app::LiveRender| engine.is_current() && !engine.is_building();
-            let both = is_current(app.engine())
+            let is_current = |live_render: &flambeau::app::LiveRender| {
+                live_render.is_current() && !live_render.is_building()
+            };
+            let both = is_current(app.live_render())
                 && app.second_side().second_render().is_some_and(is_current);
             let sides = app.second_side().comparison().map(|comparison| &comparison.sides);
             both && sides.is_some_and(|sides| sides.iter().all(|side| side.fewest_samples >= 4))
@@ -34,22 +35,22 @@ fn a_morning_with_the_window() {
 
     // A torch behind smoke, that refines.
     assert!(window.has("torch") && window.has("Start with a scene"));
-    window.until("there is a picture", |app| app.engine().picture().is_some());
+    window.until("there is a picture", |app| app.live_render().picture().is_some());
     window.press(Modifiers::NONE, Key::Escape);
-    let first = window.app().engine().picture().unwrap().stats.paths;
-    window.until("it refines", |app| app.engine().picture().unwrap().stats.paths > first);
+    let first = window.app().live_render().picture().unwrap().stats.paths;
+    window.until("it refines", |app| app.live_render().picture().unwrap().stats.paths > first);
 
     // A volume dropped on the window, guessed and changed.
     window.drop_file(TORCH.into());
     window.until_it_says("Guessed: \"temperature\" is a temperature");
     window.until_it_says("density as density");
-    let built = window.app().engine().built().unwrap().settings.clone();
+    let built = window.app().live_render().built().unwrap().settings.clone();
     let slider = window.harness.get_by_role_and_label(Role::Slider, "Density");
     slider.set_value_accesskit(4.0);
     window.harness.step();
     window.until("the slider shows", |app| {
-        let built_now = &app.engine().built().unwrap().settings;
-        built_now.volume != built.volume && app.engine().is_current()
+        let built_now = &app.live_render().built().unwrap().settings;
+        built_now.volume != built.volume && app.live_render().is_current()
     });
 
     // Everything off against everything on, and one toggle at a time.
@@ -86,7 +87,9 @@ fn a_morning_with_the_window() {
     window.press(Modifiers::NONE, Key::K);
     window.until_it_says("1 snapshot");
     window.press(Modifiers::NONE, Key::Num1);
-    window.until("it is rendered", |app| app.engine().is_current() && !app.engine().is_building());
+    window.until("it is rendered", |app| {
+        app.live_render().is_current() && !app.live_render().is_building()
+    });
     window.press(Modifiers::NONE, Key::K);
     window.until_it_says("2 snapshots");
     window.press(Modifiers::NONE, Key::ArrowLeft);
@@ -100,8 +103,8 @@ fn a_morning_with_the_window() {
     // The next day.
     let mut window = window.restart(&exr);
     assert!(window.has("resumed from"), "{:?}", window.app().notices().list());
-    window.until("there is a picture", |app| app.engine().is_current());
-    let paths = |app: &App| app.engine().picture().unwrap().stats.paths;
+    window.until("there is a picture", |app| app.live_render().is_current());
+    let paths = |app: &App| app.live_render().picture().unwrap().stats.paths;
     assert!(paths(window.app()) >= kept.totals.paths, "it begins where it ended");
     window.until("samples are added", |app| paths(app) > kept.totals.paths);
     assert_eq!(window.document().settings.volume[0].density.scale.gray(), Some(4.0));

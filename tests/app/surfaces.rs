@@ -10,7 +10,7 @@ fn surfaces(window: &Window) -> &[SurfaceSettings] {
 
 fn until_accepted(window: &mut Window) {
     window.until("the edit is built", |app| {
-        let built = app.engine().built().map(|built| &built.settings.surface);
+        let built = app.live_render().built().map(|built| &built.settings.surface);
         built == Some(&app.editor().document.settings.surface)
     });
     assert!(window.app().notices().list().is_empty(), "{:?}", window.app().notices().list());

@@ -36,7 +36,7 @@ impl Window {
 }
 
 fn is_held(app: &App) -> bool {
-    app.engine().held()
+    app.live_render().held()
 }
 
 fn open() -> Option<Window> {
@@ -49,7 +49,7 @@ fn open() -> Option<Window> {
 #[test]
 fn a_key_tries_all_strategies_and_a_button_uses_the_best() {
     let Some(mut window) = open() else { return };
-    window.until("there is a picture", |app| app.engine().is_current());
+    window.until("there is a picture", |app| app.live_render().is_current());
     window.until_quick();
     assert!(window.has("Cancelled before all strategies had their time."));
     window.click(Role::Button, "Sweep again");
@@ -84,7 +84,7 @@ fn a_key_tries_all_strategies_and_a_button_uses_the_best() {
 #[test]
 fn results_of_another_shot_say_so() {
     let Some(mut window) = open() else { return };
-    window.until("there is a picture", |app| app.engine().is_current());
+    window.until("there is a picture", |app| app.live_render().is_current());
     window.until_quick();
     assert!(!window.has("has changed since"));
     window.sweep();
@@ -101,13 +101,16 @@ fn results_of_another_shot_say_so() {
 #[test]
 fn the_edited_side_of_a_comparison_takes_a_strategy_over() {
     let Some(mut window) = open() else { return };
-    window.until("there is a picture", |app| app.engine().is_current());
+    window.until("there is a picture", |app| app.live_render().is_current());
     window.until_quick();
     window.press(Modifiers::NONE, Key::C);
     window.press(Modifiers::NONE, Key::B);
     assert!(window.has("In use: baseline"));
     window.click(Role::Button, "Use: light probes alone");
     let document = window.document();
-    assert_eq!(document.settings.strategy, Toggle::Probes.set(&Preset::Baseline.strategy(), true));
+    assert_eq!(
+        document.settings.strategy,
+        Toggle::LightProbes.set(&Preset::Baseline.strategy(), true)
+    );
     assert_eq!(document.compared.unwrap().other, Preset::Full.strategy());
 }

@@ -20,7 +20,7 @@ fn volume(window: &Window) -> &VolumeSettings {
 /// Runs frames until what was edited is what is rendered.
 fn until_accepted(window: &mut Window) {
     window.until("the edit is built", |app| {
-        let built = app.engine().built().map(|built| &built.settings.volume);
+        let built = app.live_render().built().map(|built| &built.settings.volume);
         built == Some(&app.editor().document.settings.volume)
     });
     assert!(window.app().notices().list().is_empty(), "{:?}", window.app().notices().list());

@@ -137,7 +137,7 @@ pub fn show(ui: &mut Ui, second_side: &SecondSide, reference: &mut MeasuredRefer
         }
         if let Some(region) = second_side.region_figures() {
             explain(ui, &region_title(&region.area));
-            grid(ui, "rectangle", &of_region(region, errors));
+            grid(ui, "region", &of_region(region, errors));
         }
     }
     if both.is_some() || reference.loaded().is_some() {

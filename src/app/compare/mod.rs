@@ -1,7 +1,8 @@
-//! Two strategies on one scene, or a snapshot and the live picture, side by side, and errors against a
-//! reference.
+//! Two strategies on one scene, or a snapshot and the live picture, side by side, and errors
+//! against a reference.
 //!
-//! - `state`: all of it; `second_side`: the render of the second strategy and what is shown of both.
+//! - `state`: all of it; `second_side`: the render of the second strategy and what is shown of
+//!   both.
 //! - `reference`: the reference and the errors against it; `measure`: the kinds of errors.
 //! - `maps`: differences, noise and errors as pictures; `region_figures`: figures of a region.
 //! - `panel`, `figures`, `noise_plot`: the panel of a comparison with its tables and its plot.

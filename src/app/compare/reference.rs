@@ -62,7 +62,7 @@ impl MeasureTask {
 pub struct MeasureView {
     /// Tone mapping of the pictures.
     pub tone: Tone,
-    /// The side of the main engine, where there are two.
+    /// The side of the main render, where there are two.
     pub main: Option<Side>,
     /// The side that is a snapshot, where one is.
     pub stored: Option<Side>,
@@ -98,8 +98,8 @@ struct MapTask {
 pub struct MeasuredReference {
     loaded: Option<Arc<LoadedReference>>,
     loading: Option<Loading>,
-    /// The scene that is open, and the files of the references of it and of others, the one that was
-    /// loaded last first.
+    /// The scene that is open, and the files of the references of it and of others, the one that
+    /// was loaded last first.
     scene: String,
     files: Vec<(String, PathBuf)>,
     errors: Background<MeasureTask, MeasureResult>,

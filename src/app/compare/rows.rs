@@ -120,7 +120,7 @@ fn region(
     if ui.button("Remove").on_hover_text("Remove the region.  [Esc]").clicked() {
         region.remove();
     }
-    let alone = Command::SamplesHere;
+    let alone = Command::RenderRegionOnly;
     let help = format!("{}  [{}]", alone.tooltip(), key_of(ui, alone));
     ui.toggle_value(&mut region.is_alone, "Render region only").on_hover_text(help);
     let Some(figures) = figures else { return };

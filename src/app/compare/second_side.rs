@@ -1,5 +1,5 @@
-//! Two strategies on one scene: the engine of the second one, the machine shared fairly between
-//! both, and what is shown of them.
+//! Two strategies on one scene: the second render, the machine shared fairly between both renders,
+//! and the view of both pictures.
 
 use std::sync::Arc;
 
@@ -119,7 +119,7 @@ pub struct SecondSide {
     region_figures: Background<RegionTask, RegionFigures>,
     /// Histories of the noise of A and of B.
     histories: [NoiseHistory; 2],
-    /// The side of the main engine when they were last added to.
+    /// The side of the main render when they were last added to.
     noted: Option<Side>,
 }
 
@@ -156,7 +156,7 @@ impl SecondSide {
         }
     }
 
-    /// The side of the main engine, where there are two.
+    /// The side of the main render, where there are two.
     pub fn main_side(&self) -> Option<Side> {
         let stored = self.stored.as_ref().map(|stored| stored.side.other());
         stored.or(self.last.map(|compared| compared.main))
@@ -167,12 +167,12 @@ impl SecondSide {
         self.second_render.is_some() || self.stored.is_some()
     }
 
-    /// The engine of the side that the main one does not render, while there is one.
+    /// The second render, of the side that the main render does not show, while there is one.
     pub fn second_render(&self) -> Option<&LiveRender> {
         self.second_render.as_ref()
     }
 
-    /// The engine of the side that is edited, `main` being that of the main side.
+    /// The render of the side that is edited, where `main` is the main render.
     pub fn edited<'e>(&'e self, main: &'e LiveRender) -> &'e LiveRender {
         match (&self.second_render, self.last) {
             (Some(second_render), Some(last)) if last.active != last.main => second_render,
@@ -180,10 +180,11 @@ impl SecondSide {
         }
     }
 
-    /// Number of sides that share time slices, `main` being the engine of the main side.
+    /// Number of sides that share time slices, where `main` is the main render.
     pub fn turns(&self, main: &LiveRender) -> usize {
-        let is_at_work =
-            |engine: &&LiveRender| engine.picture().is_none_or(|picture| !picture.stats.finished);
+        let is_at_work = |live_render: &&LiveRender| {
+            live_render.picture().is_none_or(|picture| !picture.stats.finished)
+        };
         std::iter::once(main).chain(self.second_render()).filter(is_at_work).count()
     }
 
@@ -195,9 +196,9 @@ impl SecondSide {
     }
 
     /// Gives all samples of the second side to the pixels of `area`, or to all pixels.
-    pub fn focus(&mut self, area: Option<Area>) {
+    pub fn render_region_only(&mut self, area: Option<Area>) {
         if let Some(second_render) = &mut self.second_render {
-            second_render.focus(area);
+            second_render.render_region_only(area);
         }
     }
 
@@ -220,8 +221,9 @@ impl SecondSide {
         self.second_render.as_mut().map_or_else(Vec::new, LiveRender::poll)
     }
 
-    /// Brings the other side in line with the document on a film of `size`, and both sides' turns at
-    /// the machine. Where a comparison has ended, the side that was edited goes on in `engine`.
+    /// Starts or ends the second render as the document asks, brings it in line with the settings
+    /// of its side on a film of `size`, and sets both renders' turns at the machine. Where a
+    /// comparison has ended, the render of the side that was edited goes on in `live_render`.
     ///
     /// # Errors
     /// When the system refuses to start threads.
@@ -229,61 +231,61 @@ impl SecondSide {
         &mut self,
         ctx: &Context,
         document: &Document,
-        engine: &mut LiveRender,
+        live_render: &mut LiveRender,
         size: UVec2,
     ) -> Result<Vec<News>> {
         let mut news = Vec::new();
         let Some(compared) = document.compared else {
-            self.end(document, engine);
-            self.update_told(ctx, engine);
+            self.end(document, live_render);
+            self.update_told(ctx, live_render);
             return Ok(news);
         };
         self.last = Some(compared);
         if self.second_render.is_none() {
-            if engine.built().is_none() {
+            if live_render.built().is_none() {
                 return Ok(news);
             }
             let wake = ctx.clone();
             let second_render =
-                engine.second_render(self.threads, move || wake.request_repaint())?;
+                live_render.second_render(self.threads, move || wake.request_repaint())?;
             second_render.session().take_turns_by(Some(self.tokens[1].clone()));
-            engine.session().take_turns_by(Some(self.tokens[0].clone()));
+            live_render.session().take_turns_by(Some(self.tokens[0].clone()));
             self.second_render = Some(second_render);
         }
         self.tokens[0].set_share(compared.share);
         let settings = document.settings_of(compared.main.other());
         if let Some(second_render) = &mut self.second_render {
             second_render.set_shows_variance(true);
-            if second_render.paused() != engine.paused() {
-                second_render.set_paused(engine.paused());
+            if second_render.paused() != live_render.paused() {
+                second_render.set_paused(live_render.paused());
             }
             if let Some(wait) = second_render.update(&settings, size, &mut news) {
                 ctx.request_repaint_after(wait);
             }
         }
-        self.update_told(ctx, engine);
+        self.update_told(ctx, live_render);
         Ok(news)
     }
 
     /// Brings map and figures in line with the pictures.
-    fn update_told(&mut self, ctx: &Context, engine: &LiveRender) {
-        self.update_map(ctx, engine);
-        self.update_figures(ctx, engine);
+    fn update_told(&mut self, ctx: &Context, live_render: &LiveRender) {
+        self.update_map(ctx, live_render);
+        self.update_figures(ctx, live_render);
     }
 
     /// Ends a comparison. Not where another scene was opened: that goes on where it was.
-    fn end(&mut self, document: &Document, engine: &mut LiveRender) {
+    fn end(&mut self, document: &Document, live_render: &mut LiveRender) {
         let last = self.last.take();
         let Some(mut second_render) = self.second_render.take() else { return };
         let edited = last.is_some_and(|last| last.active != last.main);
         if edited && second_render.renders(&document.settings) {
-            std::mem::swap(engine, &mut second_render);
+            std::mem::swap(live_render, &mut second_render);
         }
-        engine.session().take_turns_by(None);
+        live_render.session().take_turns_by(None);
     }
 
-    fn update_map(&mut self, ctx: &Context, engine: &LiveRender) {
-        let pictures = self.pictures(engine);
+    fn update_map(&mut self, ctx: &Context, live_render: &LiveRender) {
+        let pictures = self.pictures(live_render);
         let pair =
             self.layout.map().zip(pictures).map(|(kind, pictures)| BothPictures { pictures, kind });
         let wake = ctx.clone();
@@ -291,9 +293,9 @@ impl SecondSide {
         self.map.update(pair, BothPictures::same, make, move || wake.request_repaint());
     }
 
-    fn update_figures(&mut self, ctx: &Context, engine: &LiveRender) {
+    fn update_figures(&mut self, ctx: &Context, live_render: &LiveRender) {
         let pictures =
-            self.pictures(engine).filter(|pictures| pictures[0].size == pictures[1].size);
+            self.pictures(live_render).filter(|pictures| pictures[0].size == pictures[1].size);
         self.note(pictures.as_ref());
         // Before every pixel has a sample there is nothing to say, and trying would take time from
         // getting there.
@@ -355,8 +357,8 @@ impl SecondSide {
     }
 
     /// The pictures of A and B, once both have one.
-    pub fn pictures(&self, engine: &LiveRender) -> Option<[Arc<Picture>; 2]> {
-        let main = engine.picture()?.clone();
+    pub fn pictures(&self, live_render: &LiveRender) -> Option<[Arc<Picture>; 2]> {
+        let main = live_render.picture()?.clone();
         let (other, main_is_a) = match &self.stored {
             Some(stored) => (stored.picture.clone()?, stored.side == Side::B),
             None => {

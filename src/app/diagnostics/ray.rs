@@ -88,17 +88,17 @@ impl Inspector {
     }
 
     /// Brings the table in line with pixel and scene; forgets both unless `wanted`.
-    pub fn update(&mut self, ctx: &Context, wanted: bool, engine: &LiveRender) {
+    pub fn update(&mut self, ctx: &Context, wanted: bool, live_render: &LiveRender) {
         if !wanted {
             (self.picked, self.at) = (None, None);
             self.profile.clear();
             return;
         }
-        let size = engine.picture().map(|picture| picture.size);
-        let built = engine.built().map(|built| built.scene.clone());
+        let size = live_render.picture().map(|picture| picture.size);
+        let built = live_render.built().map(|built| built.scene.clone());
         let source = self.picked.zip(size).zip(built).map(|((picked, size), scene)| {
             let pixel = (picked * size.as_vec2()).as_uvec2().min(size - UVec2::ONE);
-            RayScene { scene, probes: engine.probes(), pixel, size }
+            RayScene { scene, probes: live_render.probes(), pixel, size }
         });
         let known =
             source.as_ref().zip(self.profile.done()).and_then(|(source, (other, found))| {

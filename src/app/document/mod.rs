@@ -1,6 +1,7 @@
 //! The document that is edited, and undo.
 //!
-//! - `document`: the document and its editor; `undo`: its states and the names of the edits between.
+//! - `document`: the document and its editor; `undo`: its states and the names of the edits
+//!   between.
 //! - `ramp_stops`, `up_axis`: edits of a color ramp and of a volume's orientation.
 
 mod document;

@@ -11,7 +11,7 @@ use super::probe_placer::ProbePlacer;
 use super::scene_loader::{LoadJob, LoadOutcome, LoadReport, Loader};
 use crate::app::ui::notices::Notice;
 use crate::error::{Error, Result};
-use crate::render::publish::Extras;
+use crate::render::picture::Extras;
 use crate::render::{Area, Layer, Picture, Resume, Session};
 use crate::scene::settings::FilmSettings;
 use crate::scene::{Note, Settings, VolumeCache};
@@ -19,7 +19,7 @@ use crate::transport::Scene;
 use crate::transport::probes::Probes;
 
 /// Time after which a build gives way to the next edit, and shows its progress.
-const PATIENCE: Duration = Duration::from_millis(250);
+const BUILD_PATIENCE: Duration = Duration::from_millis(250);
 
 /// An event since the last frame.
 pub enum News {
@@ -70,8 +70,8 @@ pub struct LiveRender {
     extras: Extras,
     /// The pixels that get all samples.
     area: Option<Area>,
-    /// Whether the scene was built by another engine.
-    is_fresh: bool,
+    /// Whether `built` is another render's, which is not what this one is to show.
+    built_is_borrowed: bool,
     picture: Option<Arc<Picture>>,
     /// Samples of the snapshot that was opened last, until its render starts.
     resume: Option<Resume>,
@@ -104,8 +104,8 @@ impl LiveRender {
         Self::with_cache(session, threads, Arc::default(), wake)
     }
 
-    /// Another engine for the same scene under another strategy. The engine shows nothing until it
-    /// has built that.
+    /// A second render of the same volumes under another strategy. It shows nothing until it has
+    /// built the scene with that strategy.
     pub fn second_render(
         &self,
         threads: Option<usize>,
@@ -115,7 +115,7 @@ impl LiveRender {
         let mut second_render = Self::with_cache(session, threads, self.cache.clone(), wake)?;
         second_render.built = self.built.clone();
         second_render.grids = self.grids.clone();
-        second_render.is_fresh = true;
+        second_render.built_is_borrowed = true;
         Ok(second_render)
     }
 
@@ -144,7 +144,7 @@ impl LiveRender {
             held: false,
             extras: Extras::default(),
             area: None,
-            is_fresh: false,
+            built_is_borrowed: false,
             picture: None,
             resume: None,
         })
@@ -181,7 +181,7 @@ impl LiveRender {
         let opening = self.opening.as_ref().map(|(_, since)| since);
         let building = self.building.as_ref().map(|(_, since)| since);
         let since = opening.or(building)?;
-        if since.elapsed() > PATIENCE { self.loader.progress() } else { None }
+        if since.elapsed() > BUILD_PATIENCE { self.loader.progress() } else { None }
     }
 
     /// The latest picture.
@@ -243,12 +243,12 @@ impl LiveRender {
         }
     }
 
-    /// Whether pictures bring the tracking steps of each pixel along.
+    /// Which layer pictures bring along, if any.
     pub fn set_layer(&mut self, layer: Option<Layer>) {
         self.set_extras(Extras { layer, ..self.extras });
     }
 
-    /// Whether pictures bring the variance of each pixel along.
+    /// Sets whether pictures bring the variance of each pixel along.
     pub fn set_shows_variance(&mut self, shows: bool) {
         self.set_extras(Extras { variance: shows, ..self.extras });
     }
@@ -261,10 +261,10 @@ impl LiveRender {
     }
 
     /// Gives all samples to the pixels of `area`, or to all pixels.
-    pub fn focus(&mut self, area: Option<Area>) {
+    pub fn render_region_only(&mut self, area: Option<Area>) {
         if self.area != area {
             self.area = area;
-            self.session.focus(area);
+            self.session.render_region_only(area);
         }
     }
 
@@ -335,7 +335,7 @@ impl LiveRender {
                     }
                 });
                 self.built = Some(built);
-                self.is_fresh = false;
+                self.built_is_borrowed = false;
             }
             (LoadJob::Open(_), Err(error)) => news.push(News::Failed(error.to_string())),
             (LoadJob::Build(settings), Err(error)) => {
@@ -345,8 +345,11 @@ impl LiveRender {
         }
     }
 
-    /// Brings the render in line with `settings` on a film of `size` pixels. Called at the end
-    /// of a frame; gives the time after which it should be called again, if it had to wait.
+    /// Brings the render in line with `settings` on a film of `size` pixels. Another size or other
+    /// settings of the film start the scene that is there on a new film; settings of anything else
+    /// build a new scene, which then starts in its place. The samples go on where neither differs.
+    /// Called at the end of a frame; gives the time after which it should be called again, where
+    /// the build under way is too young to give way to this one.
     pub fn update(
         &mut self,
         settings: &Settings,
@@ -354,8 +357,8 @@ impl LiveRender {
         news: &mut Vec<News>,
     ) -> Option<Duration> {
         let built = self.built.as_ref();
-        self.is_fresh &= built.is_some_and(|built| !same_scene(&built.settings, settings));
-        if !self.is_fresh {
+        self.built_is_borrowed &= built.is_some_and(|built| !same_scene(&built.settings, settings));
+        if !self.built_is_borrowed {
             self.start(&settings.film, size, news);
         }
         self.build(settings, size, news)
@@ -400,21 +403,21 @@ impl LiveRender {
         size: UVec2,
         news: &mut Vec<News>,
     ) -> Option<Duration> {
-        let fresh = |other: &Settings| same_scene(other, settings);
+        let is_same = |other: &Settings| same_scene(other, settings);
         let built = self.built.as_ref()?;
-        if fresh(&built.settings) {
+        if is_same(&built.settings) {
             if self.refused.take().is_some() {
                 news.push(News::Accepted);
             }
             return None;
         }
-        if self.opening.is_some() || self.refused.as_ref().is_some_and(fresh) {
+        if self.opening.is_some() || self.refused.as_ref().is_some_and(is_same) {
             return None;
         }
         if let Some((asked, since)) = &self.building
-            && (fresh(asked) || since.elapsed() < PATIENCE)
+            && (is_same(asked) || since.elapsed() < BUILD_PATIENCE)
         {
-            return (!fresh(asked)).then(|| PATIENCE.saturating_sub(since.elapsed()));
+            return (!is_same(asked)).then(|| BUILD_PATIENCE.saturating_sub(since.elapsed()));
         }
         self.building = Some((settings.clone(), Instant::now()));
         let start = self.next_start(size, news);

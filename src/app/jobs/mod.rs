@@ -3,8 +3,8 @@
 //! - `live_render`: keeps the picture up to date with the document.
 //! - `scene_loader`, `built`, `reopen`: reads and builds scenes and snapshots.
 //! - `probe_placer`: starts renders and places their probes meanwhile.
-//! - `mailbox`: one message to a thread, the latest wins; `background`: one value made anew whenever
-//!   what it is made from changes.
+//! - `mailbox`: one message to a thread, the latest wins; `background`: one value made anew
+//!   whenever what it is made from changes.
 //! - `dialogs`, `film_file`: choosing files, and films on their way into them.
 
 pub mod background;

@@ -68,8 +68,9 @@ fn follow_keyboard(ui: &mut Ui) {
     }
 }
 
-/// The offset that keeps what is under the pointer, or else at the top of the `view`, where it was, after
-/// what is above it has grown or shrunk; none where it has not. `offset` is what was drawn with.
+/// The offset that keeps what is under the pointer, or else at the top of the `view`, where it was,
+/// after what is above it has grown or shrunk; none where it has not. `offset` is what was drawn
+/// with.
 fn held(ui: &Ui, (view, offset): (Rect, f32), before: &Tops, after: &Tops) -> Option<f32> {
     let pointer = ui.input(|input| input.pointer.latest_pos());
     let at = pointer.filter(|at| view.contains(*at)).map_or(0.0, |at| at.y - view.top());

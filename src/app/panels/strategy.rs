@@ -55,7 +55,7 @@ fn row_of(ui: &mut Ui, panel: &mut Panel<'_>, toggle: Toggle) {
     });
     ui.indent(key, |ui| {
         explain(ui, &key_summary(key));
-        let unpaid = toggle == Toggle::Probes && panel.guided_flights == Some(0.0);
+        let unpaid = toggle == Toggle::LightProbes && panel.guided_flights == Some(0.0);
         let why = match idle {
             Some(reason) => Some(format!("No effect here: {reason}")),
             None => unpaid.then(|| "Switched off automatically: no gain in this shot.".to_owned()),

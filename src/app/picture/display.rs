@@ -46,8 +46,8 @@ pub const PANES: usize = 2;
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Upload {
     source: TextureData,
-    /// The tone that its light is coded with, if that is done here: of a coarse picture this is worked
-    /// out for its few texels, not for every pixel of the window.
+    /// The tone that its light is coded with, if that is done here: of a coarse picture this is
+    /// worked out for its few texels, not for every pixel of the window.
     coded: Option<Tone>,
 }
 
@@ -201,7 +201,8 @@ impl Shot {
     fn coded(&self, canvas: wgpu::TextureFormat) -> Option<Tone> {
         let (Look::Picture(tone) | Look::Light(tone)) = self.look else { return None };
         let is_plain = !canvas.is_srgb() && !pipelines::has_grid(1.0 / self.placement.scale);
-        // Smaller blocks are many, and blocks smaller than a pixel of the window have to be averaged.
+        // Smaller blocks are many, and blocks smaller than a pixel of the window have to be
+        // averaged.
         let side = 1 << self.picture.block_log2;
         let are_large = side > 2 && 1.0 / self.placement.scale <= side as f32;
         (are_large && is_plain).then_some(tone)

@@ -44,8 +44,8 @@ pub struct Options {
     pub cleared: bool,
     /// The shortest time from frame to frame, where drawing one takes the cores from the render.
     pub pace: Option<Duration>,
-    /// The folder that keeps what outlasts a run; `None`: what the environment says (`FLAMBEAU_DATA`)
-    /// or the system has for it.
+    /// The folder that keeps what outlasts a run; `None`: what the environment says
+    /// (`FLAMBEAU_DATA`) or the system has for it.
     pub data: Option<PathBuf>,
 }
 
@@ -53,7 +53,7 @@ pub struct Options {
 /// it.
 pub struct App {
     pub(super) editor: Editor,
-    pub(super) engine: LiveRender,
+    pub(super) live_render: LiveRender,
     pub(super) compare: CompareState,
     pub(super) sweep: Sweep,
     pub(super) viewport: Viewport,
@@ -84,10 +84,10 @@ impl App {
         theme::apply(ctx);
         display::install(state);
         let wake = ctx.clone();
-        let mut engine = LiveRender::new(options.threads, move || wake.request_repaint())?;
+        let mut live_render = LiveRender::new(options.threads, move || wake.request_repaint())?;
         let is_plain = options.source.is_none();
         let source = options.source.unwrap_or_else(|| DEFAULT_SCENE.to_owned());
-        engine.open(&source);
+        live_render.open(&source);
         let data_folder = data_folder(options.data);
         let preferences = data_folder.as_deref().map(Preferences::read).unwrap_or_default();
         let references = preferences.references.clone();
@@ -97,7 +97,7 @@ impl App {
         preferences.scale().inspect(|&scale| ctx.set_zoom_factor(scale));
         Ok(Self {
             editor,
-            engine,
+            live_render,
             compare: CompareState {
                 second_side: SecondSide::new(options.threads, &pool),
                 reference: MeasuredReference::new(&pool, references),
@@ -128,8 +128,8 @@ impl App {
     }
 
     /// The render behind the picture.
-    pub fn engine(&self) -> &LiveRender {
-        &self.engine
+    pub fn live_render(&self) -> &LiveRender {
+        &self.live_render
     }
 
     /// Second side of the comparison.

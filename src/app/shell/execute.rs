@@ -23,7 +23,7 @@ impl App {
             Command::Quit => ctx.send_viewport_cmd(egui::ViewportCommand::Close),
             Command::Undo => self.editor.undo(),
             Command::Redo => self.editor.redo(),
-            Command::PauseResume => self.engine.set_paused(!self.engine.paused()),
+            Command::PauseResume => self.live_render.set_paused(!self.live_render.paused()),
             Command::Restart => self.restart(),
             Command::Toggle(toggle) => self.switch(toggle),
             Command::FrameVolume => self.frame_volume(),
@@ -31,7 +31,7 @@ impl App {
             Command::ZoomToPixels => self.zoom_to_pixels(),
             Command::ExposureUp => self.expose_by(0.5),
             Command::ExposureDown => self.expose_by(-0.5),
-            Command::AutoExposure => self.expose(),
+            Command::AutoExposure => self.auto_expose(),
             Command::NextToneCurve => self.next_tone_curve(),
             Command::FalseColor => self.toggle_false_color(),
             Command::GoToPicture => self.viewport.wants_keyboard = true,
@@ -52,12 +52,12 @@ impl App {
             Command::CompareAsA => self.set_against_live(Side::A),
             Command::CompareAsB => self.set_against_live(Side::B),
             Command::SaveComparison => self.ask_to_save_comparison(ctx),
-            Command::Rectangle => self.compare.region.arm(),
-            Command::SamplesHere => self.give_region_all_samples(),
+            Command::MeasureRegion => self.compare.region.arm(),
+            Command::RenderRegionOnly => self.toggle_region_only(),
             Command::LoadReference => self.ask(ctx, Purpose::Reference),
             Command::PictureAsReference => self.take_picture(ctx),
             Command::RemoveReference => self.compare.reference.remove(),
-            Command::Sweep => self.sweep.ask(&self.editor.document.settings),
+            Command::Sweep => self.sweep.request(&self.editor.document.settings),
             Command::KeepSnapshot => self.snapshots.wants_keep = true,
             Command::PreviousSnapshot => self.snapshots.strip.show_previous(),
             Command::NextSnapshot => self.show_next_snapshot(),
@@ -72,7 +72,7 @@ impl App {
 
     /// Discards the samples of every side.
     fn restart(&mut self) {
-        self.engine.restart();
+        self.live_render.restart();
         self.compare.second_side.restart();
     }
 
@@ -112,12 +112,12 @@ impl App {
     /// Closes what is open in front, unless the key closes a popup already.
     fn close_front(&mut self, ctx: &Context) {
         if !ctx.any_popup_open() {
-            self.leave(ctx);
+            self.close_front_most(ctx);
         }
     }
 
     /// Closes or takes back what is there beside the live picture, the front one first.
-    fn leave(&mut self, ctx: &Context) {
+    fn close_front_most(&mut self, ctx: &Context) {
         if self.chrome.help {
             self.chrome.help = false;
         } else if self.unsaved.pending.is_some() {
@@ -150,7 +150,7 @@ impl App {
     }
 
     /// Exposes for the picture that is shown.
-    fn expose(&mut self) {
+    fn auto_expose(&mut self) {
         let stops = self.shown_picture().and_then(|picture| auto_exposure(&picture.pixels));
         if let Some(stops) = stops {
             self.editor.document.tone.exposure = stops;
@@ -160,7 +160,7 @@ impl App {
 
     /// Moves the camera so that everything finite that fills space is in the picture.
     fn frame_volume(&mut self) {
-        let Some(built) = self.engine.built() else { return };
+        let Some(built) = self.live_render.built() else { return };
         let Some(bounds) = built.scene.world.finite_bounds() else { return };
         let size = self.film_size().unwrap_or(UVec2::ONE).as_vec2();
         let camera = &mut self.editor.document.settings.camera;

@@ -20,7 +20,7 @@ impl App {
         if let Some(stats) = &mut self.stats {
             stats.frame();
         }
-        let mut news = self.engine.poll();
+        let mut news = self.live_render.poll();
         news.extend(self.compare.second_side.poll());
         self.take_in(&ctx, news);
         self.take_in_arrivals(&ctx);
@@ -76,17 +76,20 @@ impl App {
         }
     }
 
+    /// Brings all that shows the document in line with it: layers and region, the second render,
+    /// the main render, and the figures measured on their pictures. The renders decide themselves
+    /// whether an edit makes them start over.
     fn bring_up_to_date(&mut self, ctx: &Context) {
-        self.diagnostics.update(ctx, &mut self.engine);
+        self.diagnostics.update(ctx, &mut self.live_render);
         self.compare.second_side.set_layer(self.diagnostics.wanted.layer);
         self.update_versus();
         let Some(size) = self.film_size() else { return };
         let alone = self.compare.region.alone(size);
-        self.engine.focus(alone);
-        self.compare.second_side.focus(alone);
+        self.live_render.render_region_only(alone);
+        self.compare.second_side.render_region_only(alone);
         let mut news = Vec::new();
         let document = &self.editor.document;
-        match self.compare.second_side.update(ctx, document, &mut self.engine, size) {
+        match self.compare.second_side.update(ctx, document, &mut self.live_render, size) {
             Ok(more) => news.extend(more),
             Err(error) => {
                 self.notices.failed(error.to_string());
@@ -95,9 +98,9 @@ impl App {
         }
         let document = &self.editor.document;
         let wait = match document.compared {
-            None => self.engine.update(&document.settings, size, &mut news),
+            None => self.live_render.update(&document.settings, size, &mut news),
             Some(Compared { main, .. }) => {
-                self.engine.update(&document.settings_of(main), size, &mut news)
+                self.live_render.update(&document.settings_of(main), size, &mut news)
             }
         };
         if let Some(wait) = wait {
@@ -123,7 +126,7 @@ impl App {
         let camera = &self.editor.document.settings.camera;
         let target = Vec3A::from(camera.target);
         let around = Vec3A::splat(0.25 * target.distance(camera.position.into()).max(1e-3));
-        let filled = self.engine.built().and_then(|built| built.scene.world.finite_bounds());
+        let filled = self.live_render.built().and_then(|built| built.scene.world.finite_bounds());
         filled.unwrap_or_else(|| Aabb::new(target - around, target + around))
     }
 }

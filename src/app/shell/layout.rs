@@ -61,9 +61,9 @@ impl App {
         let second_side = &self.compare.second_side;
         let mut line = StatusLine {
             editor: &mut self.editor,
-            engine: second_side.edited(&self.engine),
+            live_render: second_side.edited(&self.live_render),
             second_side,
-            turns: second_side.turns(&self.engine),
+            turns: second_side.turns(&self.live_render),
             viewport: &self.viewport,
             snapshots: &self.snapshots,
             layer: self.diagnostics.wanted.layer,
@@ -76,12 +76,12 @@ impl App {
 
     /// Shows the column of panels on `plain` ground.
     fn panel_column(&mut self, ui: &mut Ui, plain: Frame, commands: &mut Vec<Command>) {
-        let edited = self.compare.second_side.edited(&self.engine);
+        let edited = self.compare.second_side.edited(&self.live_render);
         let guided_flights = edited.picture().and_then(|picture| picture.stats.guided_flights);
         let bounds = self.subject_bounds();
         let mut panel = Panel {
             editor: &mut self.editor,
-            grids: self.engine.grids(),
+            grids: self.live_render.grids(),
             notes: &self.opened.notes,
             bounds,
             selected_light: &mut self.gizmo.selected,
@@ -172,9 +172,9 @@ impl App {
                 None => Shown::One(snapshot.clone(), look),
             };
         }
-        let Some(picture) = self.engine.picture() else { return Shown::Nothing };
+        let Some(picture) = self.live_render.picture() else { return Shown::Nothing };
         let layer = |pictures: &[&Picture]| self.diagnostics.look(pictures, tone).unwrap_or(look);
-        let pictures = self.compare.second_side.pictures(&self.engine);
+        let pictures = self.compare.second_side.pictures(&self.live_render);
         if let Some((active, pictures)) =
             self.compare.active_side(&self.editor.document).zip(pictures)
         {
@@ -240,8 +240,8 @@ impl App {
     }
 
     fn progress_row(&mut self, ui: &mut Ui) {
-        let Some(fraction) = self.engine.progress() else { return };
-        let what = match self.engine.opening() {
+        let Some(fraction) = self.live_render.progress() else { return };
+        let what = match self.live_render.opening() {
             Some(source) => format!("Loading {}", self.name_of(source.to_owned())),
             None => "Building the scene".to_owned(),
         };
@@ -249,7 +249,7 @@ impl App {
         let row = egui::Panel::bottom("progress").frame(frame);
         let help = "Stop loading and keep the current scene.";
         if row.show(ui, |ui| bars::progress(ui, &what, fraction, help)).inner {
-            self.engine.cancel();
+            self.live_render.cancel();
         }
     }
 }

@@ -16,7 +16,7 @@ use crate::render::Picture;
 impl App {
     /// Pictures that the figures are of: those of A and B, or the one in the viewport.
     pub(super) fn looked_at(&self) -> Vec<Arc<Picture>> {
-        match self.compare.second_side.pictures(&self.engine) {
+        match self.compare.second_side.pictures(&self.live_render) {
             Some(pictures) => pictures.to_vec(),
             None => self.shown_picture().cloned().into_iter().collect(),
         }
@@ -30,7 +30,7 @@ impl App {
         let pictures = self.looked_at();
         let compare = &mut self.compare;
         let has_region = !pictures.is_empty() && compare.region.is_set();
-        self.engine.set_shows_variance(compare.second_side.is_on() || has_region);
+        self.live_render.set_shows_variance(compare.second_side.is_on() || has_region);
         let tone = self.editor.document.tone;
         compare.update(ctx, pictures, tone, self.snapshots.picture().is_some());
     }
@@ -38,7 +38,7 @@ impl App {
     /// Shows the rows of A and B, the region and the reference.
     pub(super) fn measure_rows(&mut self, ui: &mut Ui) {
         let (pictures, document) = (self.looked_at(), &self.editor.document);
-        match rows::show(ui, &mut self.compare, document, &pictures, self.engine.picture()) {
+        match rows::show(ui, &mut self.compare, document, &pictures, self.live_render.picture()) {
             Some(Asked::Command(command)) => self.execute(&ui.ctx().clone(), command),
             Some(Asked::Size(size)) => {
                 let document = &mut self.editor.document;
@@ -61,8 +61,8 @@ impl App {
     pub(super) fn take_picture(&mut self, ctx: &Context) {
         let snapshot = self.snapshots.strip.shown_item();
         let snapshot = snapshot.map(|item| (item.record.name.clone(), self.snapshots.file(item)));
-        let engine = self.compare.second_side.edited(&self.engine);
-        let origin = match (snapshot, engine.rendered(), engine.picture()) {
+        let live_render = self.compare.second_side.edited(&self.live_render);
+        let origin = match (snapshot, live_render.rendered(), live_render.picture()) {
             (Some((name, Some(file))), ..) => {
                 ReferenceOrigin::File(format!("snapshot {name}"), file)
             }
@@ -87,8 +87,8 @@ impl App {
             self.compare.second_side.layout.next(&self.compare.layouts());
     }
 
-    /// Gives the region all samples, or all pixels again. Without a region the next drag draws one.
-    pub(super) fn give_region_all_samples(&mut self) {
+    /// Renders the region only, or all pixels again. Without a region the next drag draws one.
+    pub(super) fn toggle_region_only(&mut self) {
         self.compare.region.is_alone = !self.compare.region.is_alone;
         if !self.compare.region.is_set() {
             self.compare.region.arm();

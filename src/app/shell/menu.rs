@@ -20,7 +20,7 @@ const VIEW: [&[Command]; 5] = [
 const COMPARE: [&[Command]; 5] = [
     &[Command::Compare, Command::NextLayout, Command::SaveComparison],
     &[Command::SwitchSide, Command::SwapSides, Command::CopySide],
-    &[Command::Rectangle, Command::SamplesHere],
+    &[Command::MeasureRegion, Command::RenderRegionOnly],
     &[Command::LoadReference, Command::PictureAsReference, Command::RemoveReference],
     &[Command::Sweep],
 ];

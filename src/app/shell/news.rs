@@ -47,7 +47,7 @@ impl App {
 
     /// Takes in what other threads and the desktop have brought since the last frame.
     pub(super) fn take_in_arrivals(&mut self, ctx: &Context) {
-        if let (Some(stats), Some(picture)) = (&mut self.stats, self.engine.picture()) {
+        if let (Some(stats), Some(picture)) = (&mut self.stats, self.live_render.picture()) {
             stats.shown(picture.generation);
         }
         for (path, result) in self.files.saver.poll() {

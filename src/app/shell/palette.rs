@@ -97,8 +97,8 @@ fn item(ui: &mut Ui, command: Command, chosen: bool) -> egui::Response {
     ui.add(button).on_hover_text(command.tooltip())
 }
 
-/// The commands that have every word of `text` in their name, those first whose name begins with it;
-/// then those that have it in their help.
+/// The commands that have every word of `text` in their name, those first whose name begins with
+/// it; then those that have it in their help.
 fn found(text: &str) -> Vec<Command> {
     let text = text.trim().to_lowercase();
     let rank = |command: Command| {

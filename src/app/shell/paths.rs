@@ -12,7 +12,7 @@ impl App {
     /// Opens a path or `builtin:NAME`.
     pub(super) fn open(&mut self, source: &str) {
         self.files.path_bar = None;
-        self.engine.open(source);
+        self.live_render.open(source);
     }
 
     /// Opens a dropped file, or measures against it; of a picture that could be either it asks.
@@ -32,7 +32,7 @@ impl App {
             self.open_or_ask(&path.to_string_lossy());
         } else if purpose == Purpose::Reference {
             self.load_reference(ctx, path);
-        } else if self.engine.is_building() {
+        } else if self.live_render.is_building() {
             // The film is about to become that of another scene.
             self.files.waiting.push((purpose, path));
         } else {
@@ -42,7 +42,7 @@ impl App {
 
     /// Saves what waited for a build to end.
     pub(super) fn save_waiting(&mut self, ctx: &Context) {
-        if !self.engine.is_building() {
+        if !self.live_render.is_building() {
             for (purpose, path) in std::mem::take(&mut self.files.waiting) {
                 self.save(ctx, purpose, path);
             }
@@ -70,20 +70,20 @@ impl App {
             return self.snapshot_content(purpose);
         }
         let document = &self.editor.document;
-        let engine = self.compare.second_side.edited(&self.engine);
-        let settings = engine.rendered()?;
+        let live_render = self.compare.second_side.edited(&self.live_render);
+        let settings = live_render.rendered()?;
         match purpose {
             Purpose::Open | Purpose::Reference => None,
             Purpose::SaveComparison => Some(Content::View(Box::new(self.saved_view(ctx)))),
             Purpose::SaveExr => Some(Content::Exr {
-                film: engine.session().snapshot(),
+                film: live_render.session().snapshot(),
                 settings: settings.clone(),
-                seconds: engine
+                seconds: live_render
                     .picture()
                     .map_or([0.0; 2], |picture| [picture.stats.seconds, picture.stats.cpu_seconds]),
             }),
             Purpose::SavePng => {
-                Some(Content::Png { film: engine.session().snapshot(), tone: document.tone })
+                Some(Content::Png { film: live_render.session().snapshot(), tone: document.tone })
             }
             Purpose::SaveScene => {
                 // A film of the window's size is written as that size, so the picture is the same.

@@ -64,8 +64,8 @@ impl Default for Preferences {
 }
 
 impl Preferences {
-    /// The preferences in the data folder. A file that cannot be read is as good as none: no setting of
-    /// the window is worth a complaint at its start.
+    /// The preferences in the data folder. A file that cannot be read is as good as none: no
+    /// setting of the window is worth a complaint at its start.
     pub fn read(data: &Path) -> Self {
         let text = std::fs::read_to_string(data.join(FILE)).unwrap_or_default();
         serde_json::from_str(&text).unwrap_or_default()

@@ -12,7 +12,7 @@ use crate::files;
 use crate::image::exr;
 use crate::image::png;
 use crate::image::tone::Tone;
-use crate::render::publish::resolve;
+use crate::render::picture::resolve;
 use crate::render::{Film, Picture};
 use crate::scene::{self, Settings};
 

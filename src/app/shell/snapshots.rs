@@ -22,7 +22,7 @@ impl App {
     pub(super) fn update_snapshots(&mut self, ctx: &Context) {
         self.snapshots.update(ctx.text_edit_focused(), &mut self.notices);
         // The film of an edit that is being built is about to become that of another scene.
-        let may_keep = !self.engine.is_building() && self.snapshots.keeping() < MOST_AT_ONCE;
+        let may_keep = !self.live_render.is_building() && self.snapshots.keeping() < MOST_AT_ONCE;
         if self.snapshots.wants_keep && may_keep {
             self.snapshots.wants_keep = false;
             self.keep();
@@ -30,8 +30,9 @@ impl App {
     }
 
     fn keep(&mut self) {
-        let engine = self.compare.second_side.edited(&self.engine);
-        let (Some(settings), Some(picture)) = (engine.rendered(), engine.picture()) else {
+        let live_render = self.compare.second_side.edited(&self.live_render);
+        let (Some(settings), Some(picture)) = (live_render.rendered(), live_render.picture())
+        else {
             self.notices.failed("There is no picture to keep yet.");
             return;
         };
@@ -46,7 +47,7 @@ impl App {
             cpu_seconds: picture.stats.cpu_seconds,
             tone: self.editor.document.tone,
             name: self.snapshots.strip.free_name(&name),
-            film: engine.session().snapshot(),
+            film: live_render.session().snapshot(),
         };
         self.snapshots.keep(keep);
     }
@@ -58,7 +59,7 @@ impl App {
 
     /// The picture in the viewport: a snapshot, or the live one.
     pub(super) fn shown_picture(&self) -> Option<&Arc<Picture>> {
-        self.snapshots.picture().or_else(|| self.engine.picture())
+        self.snapshots.picture().or_else(|| self.live_render.picture())
     }
 
     /// Shows the snapshot after the one shown. Past the last one comes the live picture, except
@@ -157,7 +158,7 @@ impl App {
         if !self.snapshots.strip.is_open() {
             return;
         }
-        let live = self.engine.picture().cloned();
+        let live = self.live_render.picture().cloned();
         let panel = egui::Panel::bottom("snapshots").frame(theme::panel_frame());
         let asked = panel
             .show(ui, |ui| {

@@ -27,7 +27,7 @@ pub struct StatusLine<'a> {
     /// The document and its record of edits.
     pub editor: &'a mut Editor,
     /// The render of the side that is edited.
-    pub engine: &'a LiveRender,
+    pub live_render: &'a LiveRender,
     /// Second side of the comparison.
     pub second_side: &'a SecondSide,
     /// Number of sides that share time slices.
@@ -44,9 +44,9 @@ pub struct StatusLine<'a> {
 
 /// Shows the line.
 pub fn show(ui: &mut Ui, panel: &mut StatusLine<'_>) {
-    let (engine, viewport, snapshots) = (panel.engine, panel.viewport, panel.snapshots);
+    let (live_render, viewport, snapshots) = (panel.live_render, panel.viewport, panel.snapshots);
     ui.horizontal_centered(|ui| {
-        let (text, help) = if engine.paused() {
+        let (text, help) = if live_render.paused() {
             ("Resume", "Resume sampling.")
         } else {
             ("Pause", "Stop sampling and keep the picture.")
@@ -60,11 +60,11 @@ pub fn show(ui: &mut Ui, panel: &mut StatusLine<'_>) {
         if snapshot.is_none() {
             bias(ui, panel);
         }
-        match engine.picture() {
+        match live_render.picture() {
             _ if let Some(item) = snapshot => snapshot_figures(ui, item),
-            Some(picture) => progress(ui, &picture.stats, engine, panel.turns),
+            Some(picture) => progress(ui, &picture.stats, live_render, panel.turns),
             None => {
-                let opening = engine.opening().is_some() || engine.built().is_some();
+                let opening = live_render.opening().is_some() || live_render.built().is_some();
                 let text =
                     if opening { "Waiting for the first picture…" } else { "Nothing is open." };
                 ui.weak(text);
@@ -73,7 +73,7 @@ pub fn show(ui: &mut Ui, panel: &mut StatusLine<'_>) {
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             // What does not fit beside the figures is left out, the least needed first.
             display(ui, panel);
-            if let Some(picture) = snapshots.picture().or_else(|| engine.picture())
+            if let Some(picture) = snapshots.picture().or_else(|| live_render.picture())
                 && ui.available_width() > ZOOM_WIDTH
             {
                 ui.separator();
@@ -108,7 +108,7 @@ fn snapshot_figures(ui: &mut Ui, item: &StripItem) {
         .on_hover_text("A snapshot is shown instead of the live picture. Press Escape to go back.");
 }
 
-fn progress(ui: &mut Ui, stats: &RenderStats, engine: &LiveRender, turns: usize) {
+fn progress(ui: &mut Ui, stats: &RenderStats, live_render: &LiveRender, turns: usize) {
     let spp = samples(stats.samples_per_pixel);
     figure(ui, &spp, "spp", "Samples per pixel so far.", 38.0);
     figure(ui, &seconds(stats.seconds), "", "Time spent on this picture.", 50.0);
@@ -126,23 +126,23 @@ fn progress(ui: &mut Ui, stats: &RenderStats, engine: &LiveRender, turns: usize)
         ui.label(RichText::new(text).color(color::WARNING))
             .on_hover_text("Samples that were not finite numbers and count as black.");
     }
-    let state = match (engine.paused(), stats.finished) {
+    let state = match (live_render.paused(), stats.finished) {
         (true, _) => "paused",
-        (false, false) if engine.held() => "paused while strategies are tried",
+        (false, false) if live_render.held() => "paused while strategies are tried",
         (false, true) => "finished",
-        (false, false) if engine.picture().is_some_and(|picture| picture.focus.is_some()) => {
+        (false, false) if live_render.picture().is_some_and(|picture| picture.region.is_some()) => {
             "region only"
         }
-        (false, false) => return ending(ui, stats, engine, turns),
+        (false, false) => return ending(ui, stats, live_render, turns),
     };
     ui.label(RichText::new(state).color(color::ACCENT));
 }
 
 /// Shows the time until the end of a render with a limit, one of so many that share time slices.
-fn ending(ui: &mut Ui, stats: &RenderStats, engine: &LiveRender, turns: usize) {
-    let wanted = engine.built().map_or(0, |built| built.settings.film.spp);
+fn ending(ui: &mut Ui, stats: &RenderStats, live_render: &LiveRender, turns: usize) {
+    let wanted = live_render.built().map_or(0, |built| built.settings.film.spp);
     // A region that gets all samples has another pace than the picture.
-    let is_whole = engine.picture().is_some_and(|picture| picture.focus.is_none());
+    let is_whole = live_render.picture().is_some_and(|picture| picture.region.is_none());
     let Some(left) = seconds_left(stats, wanted).filter(|_| is_whole) else { return };
     let left = left * turns.max(1) as f64;
     let text = RichText::new(format!("{} left", time_left(left))).color(color::TEXT_DIM);

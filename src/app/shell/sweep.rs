@@ -16,9 +16,9 @@ impl App {
         let settings = &self.editor.document.settings;
         let wake = ctx.clone();
         let updated =
-            self.sweep.update(settings, &self.engine, size, move || wake.request_repaint());
+            self.sweep.update(settings, &self.live_render, size, move || wake.request_repaint());
         let held = self.sweep.holds(settings);
-        self.engine.set_held(held);
+        self.live_render.set_held(held);
         self.compare.second_side.set_held(held);
         if let Err(error) = updated {
             self.notices.failed(error.to_string());

@@ -16,7 +16,7 @@ use crate::error::{Error, Result};
 use crate::image::exr;
 use crate::image::tone::Tone;
 use crate::render::estimate::samples_per_pixel;
-use crate::render::publish::{resolve, resolve_variance};
+use crate::render::picture::{resolve, resolve_variance};
 use crate::render::{Film, Picture};
 use crate::scene::Settings;
 

@@ -182,8 +182,8 @@ impl Store {
         }
     }
 
-    /// Removes for good what was deleted or half written longer ago than `age`, as it is left behind
-    /// by a program that did not end as it should.
+    /// Removes for good what was deleted or half written longer ago than `age`, as it is left
+    /// behind by a program that did not end as it should.
     pub fn clean(&self, age: Duration) {
         let Ok(folder) = fs::read_dir(&self.deleted) else { return };
         for item in folder.flatten() {

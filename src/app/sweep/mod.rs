@@ -81,7 +81,7 @@ impl Sweep {
     }
 
     /// Asks for a new sweep, or for the results if they are there and were closed.
-    pub fn ask(&mut self, settings: &Settings) {
+    pub fn request(&mut self, settings: &Settings) {
         let known = self.results.as_ref().is_some_and(|results| !results.is_stale(settings));
         self.wanted = self.running.is_none() && (self.open || !known);
         self.open = true;
@@ -131,19 +131,19 @@ impl Sweep {
         self.running.as_ref().is_some_and(|running| same_shot(&running.settings, settings))
     }
 
-    /// Takes in what the thread has done, and starts what was asked for once the scene of `settings`
-    /// is built, for a film of `size`. `wake` asks the window for a frame.
+    /// Takes in what the thread has done, and starts what was asked for once the scene of
+    /// `settings` is built, for a film of `size`. `wake` asks the window for a frame.
     ///
     /// # Errors
     /// When a strategy cannot be rendered or the system refuses to start threads.
     pub fn update(
         &mut self,
         settings: &Settings,
-        engine: &LiveRender,
+        live_render: &LiveRender,
         size: UVec2,
         wake: impl Fn() + Send + 'static,
     ) -> Result<()> {
-        let scene = engine.built().filter(|built| same_shot(&built.settings, settings));
+        let scene = live_render.built().filter(|built| same_shot(&built.settings, settings));
         if let Some(built) = scene.filter(|_| self.wanted && self.running.is_none()) {
             self.wanted = false;
             self.running = Some(self.start(settings, built.scene.clone(), size, wake)?);

@@ -1,5 +1,5 @@
-//! Messages below the picture and never over it. Failures stay until dismissed; what went well leaves
-//! by itself.
+//! Messages below the picture and never over it. Failures stay until dismissed; what went well
+//! leaves by itself.
 
 use egui::accesskit::Live;
 use egui::{Frame, Margin, RichText, Stroke, Ui};

@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::error::Result;
 use crate::image::Reference;
 use crate::image::metrics::{self, Viewing};
-use crate::render::publish::resolve;
+use crate::render::picture::resolve;
 use crate::render::side_by_side::RenderedPair;
 
 /// Errors of a side against the reference.

@@ -8,7 +8,7 @@ use glam::UVec2;
 use super::Reference;
 use crate::image::exr::SnapshotHeader;
 use crate::render::Film;
-use crate::render::publish::resolve;
+use crate::render::picture::resolve;
 use crate::render::synthetic::{Uniform, sample_of};
 
 /// A folder for one file.

@@ -8,7 +8,7 @@ use super::speed::{self, SpeedUp};
 use super::tally::{PixelSource, Tally};
 use crate::render::area::Area;
 use crate::render::film::Film;
-use crate::render::publish::Picture;
+use crate::render::picture::Picture;
 
 /// The comparison of two films of one scene, A and B.
 #[derive(Clone, Debug, PartialEq)]

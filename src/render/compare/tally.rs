@@ -6,7 +6,7 @@ use super::side_figures::SideFigures;
 use crate::render::area::Area;
 use crate::render::estimate::{PixelEstimate, gray};
 use crate::render::film::Film;
-use crate::render::publish::Picture;
+use crate::render::picture::Picture;
 
 /// Sums over some pixels of one side.
 #[derive(Clone, Copy, Debug)]
@@ -85,7 +85,7 @@ impl PixelSource for Picture {
     }
 
     fn samples(&self, pixel: UVec2) -> u32 {
-        match self.focus {
+        match self.region {
             Some((area, fewest)) if area.contains(pixel) => fewest,
             _ => self.fewest_samples,
         }

@@ -202,7 +202,7 @@ fn rounding_is_no_difference() {
 /// Figures taken from pictures equal those taken from their films.
 #[test]
 fn pictures_tell_the_same_as_their_films() {
-    use crate::render::publish::{Picture, resolve, resolve_variance};
+    use crate::render::picture::{Picture, resolve, resolve_variance};
     let films = [level(0, 1.0, 0.9, 16), level(1, 1.0, 0.3, 16)];
     let seconds = [2.0, 1.0];
     let pictures = [0, 1].map(|side| {
@@ -232,14 +232,14 @@ fn pictures_tell_the_same_as_their_films() {
 /// Where a region gets all samples, figures of the region use its samples, and the rest its own.
 #[test]
 fn a_region_with_all_samples_is_known_better_than_the_rest() {
-    use crate::render::publish::Picture;
+    use crate::render::picture::Picture;
     let area = Area { first: UVec2::new(3, 4), size: UVec2::new(9, 11) };
     let pixels = vec![[1.0; 4]; (SIZE.x * SIZE.y) as usize];
     let picture = Picture {
         size: SIZE,
         pixels,
         fewest_samples: 1,
-        focus: Some((area, 40)),
+        region: Some((area, 40)),
         ..Default::default()
     };
     let inside = SideFigures::of_picture(&picture, Some(area));

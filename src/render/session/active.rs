@@ -11,9 +11,9 @@ use crate::error::Result;
 use crate::render::area::Area;
 use crate::render::film::Film;
 use crate::render::headless::same_size;
+use crate::render::picture::{Extras, Picture};
 use crate::render::pool::Pool;
 use crate::render::progressive::ProgressiveRender;
-use crate::render::publish::{Extras, Picture};
 use crate::render::schedule::Limits;
 use crate::transport::PixelSampler;
 
@@ -52,7 +52,7 @@ impl Active {
         let film = film_for(resume, size, old)?;
         let limits = Limits { spp, seconds: None };
         let mut render = ProgressiveRender::new(sampler, film, limits, seconds_per_path);
-        render.focus(area);
+        render.render_region_only(area);
         render.count_in(cpu_seconds);
         Ok(Self {
             render,
@@ -106,8 +106,8 @@ impl Active {
     }
 
     /// Gives all samples to the pixels of `area`, or to all pixels.
-    pub fn focus(&mut self, area: Option<Area>) {
-        self.render.focus(area);
+    pub fn render_region_only(&mut self, area: Option<Area>) {
+        self.render.render_region_only(area);
         self.final_shown = false;
     }
 

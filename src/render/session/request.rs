@@ -17,12 +17,12 @@ pub struct Request {
     pub spp: u32,
     /// The caller's number, which the pictures carry.
     pub generation: u64,
-    /// The render to continue, with a film of the same size. A provisional request waits for its
-    /// better sampler before it continues one, so that the samples of two never mix.
+    /// The render to go on from, with a film of the same size. It waits for a better sampler that
+    /// is in the making, so that the samples of two never mix.
     pub resume: Option<Resume>,
-    /// Whether a better sampler of the same picture, with its light probes, is in the making, which
+    /// Whether a better sampler of the same picture is in the making, which
     /// [`Session::improve`](super::Session::improve) will bring. Until then the render is not
-    /// finished, whatever its limit, and a snapshot waits, unless the render is paused.
+    /// finished, whatever its limit, and a snapshot waits, unless it is paused.
     pub provisional: bool,
 }
 

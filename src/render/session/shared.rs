@@ -8,8 +8,8 @@ use super::request::Request;
 use super::sharing::TurnToken;
 use crate::render::area::Area;
 use crate::render::film::Film;
+use crate::render::picture::{Extras, Picture};
 use crate::render::pool::Failure;
-use crate::render::publish::{Extras, Picture};
 use crate::transport::PixelSampler;
 
 /// Messages of the callers. The render thread takes requests, improvements and snapshots out when

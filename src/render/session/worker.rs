@@ -12,15 +12,15 @@ use super::shared::{Improvement, Mailbox, Shared, lock};
 use super::sharing::TurnToken;
 use crate::render::area::Area;
 use crate::render::film::Film;
+use crate::render::picture::{Extras, Picture};
 use crate::render::pool::{Failure, Pool};
 use crate::render::progressive::{ProgressiveRender, RenderStep};
-use crate::render::publish::{Extras, Picture};
 use crate::render::turns::Usage;
 
 /// Time that a request without a picture is left to get one when the next already waits. Otherwise
 /// a drag whose edits come faster than coarse pictures would show nothing until it ends. Long
 /// enough for a machine whose cores are busy drawing the window.
-const PATIENCE: Duration = Duration::from_secs(1);
+const FIRST_PICTURE_PATIENCE: Duration = Duration::from_secs(1);
 /// Wait of the thread before it asks for a time slice again. Slices are twenty times as long.
 const TURN: Duration = Duration::from_millis(1);
 
@@ -141,7 +141,7 @@ impl Worker {
         if let Some(request) = request {
             self.begin(request);
         } else if let Some(job) = self.job.as_mut().filter(|_| is_moved) {
-            job.focus(area);
+            job.render_region_only(area);
         }
         if let Some(Improvement { generation, sampler }) = improvement
             && let Some(job) = self.job.as_mut().filter(|job| job.generation == generation)
@@ -173,7 +173,7 @@ impl Worker {
     fn is_owed_a_picture(&self) -> bool {
         self.job.as_ref().is_some_and(|job| {
             let progress = job.progress(self.paused);
-            job.phase.is_owed_a_picture(&progress) && job.begun.elapsed() < PATIENCE
+            job.phase.is_owed_a_picture(&progress) && job.begun.elapsed() < FIRST_PICTURE_PATIENCE
         })
     }
 
@@ -244,7 +244,7 @@ impl Worker {
                 && (before.has_picture
                     || shared.quit.load(Ordering::Relaxed)
                     || shared.improved.load(Ordering::Relaxed)
-                    || begun.elapsed() > PATIENCE)
+                    || begun.elapsed() > FIRST_PICTURE_PATIENCE)
         };
         let step = job.render.step(&self.pool, next == Next::Rest, &stop);
         let after = job.progress(self.paused);

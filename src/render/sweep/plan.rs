@@ -162,7 +162,7 @@ mod tests {
 
     #[test]
     fn what_is_set_is_tried_too_and_its_finer_choices_are_everywhere() {
-        let mut set = Toggle::Probes.set(&Preset::Baseline.strategy(), true);
+        let mut set = Toggle::LightProbes.set(&Preset::Baseline.strategy(), true);
         set.advanced.boost_amount = 7.0;
         assert_eq!(plan(&set, &|_, _| None).len(), 12);
         set.nee = true;
@@ -180,7 +180,7 @@ mod tests {
         assert_eq!(find(&trials, TrialKind::Alone(toggle)).source, TrialSource::Rendered);
 
         // Smoke without emission leaves one strategy and the baseline.
-        let dark = |toggle, _: &Strategy| (toggle != Toggle::Probes).then_some(DARK);
+        let dark = |toggle, _: &Strategy| (toggle != Toggle::LightProbes).then_some(DARK);
         let trials = plan(&Strategy::default(), &dark);
         let rendered = trials.iter().filter(|trial| trial.source == TrialSource::Rendered);
         assert_eq!(
@@ -189,11 +189,11 @@ mod tests {
         );
         let twin = |kind| find(&trials, kind).source;
         assert_eq!(
-            twin(TrialKind::Alone(Toggle::Probes)),
+            twin(TrialKind::Alone(Toggle::LightProbes)),
             TrialSource::SameAs { twin: TrialKind::Full, why: DARK }
         );
         assert_eq!(
-            twin(TrialKind::Without(Toggle::Probes)),
+            twin(TrialKind::Without(Toggle::LightProbes)),
             TrialSource::SameAs { twin: TrialKind::Baseline, why: DARK }
         );
         assert_eq!(
@@ -209,7 +209,7 @@ mod tests {
         let trials = plan(&set, &|_, _| None);
         let refused = |kind| matches!(find(&trials, kind).source, TrialSource::Refused(_));
         assert!(refused(TrialKind::Baseline) && refused(TrialKind::Full));
-        assert!(!refused(TrialKind::Without(Toggle::Probes)));
+        assert!(!refused(TrialKind::Without(Toggle::LightProbes)));
     }
 
     #[test]

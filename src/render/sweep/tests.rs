@@ -89,7 +89,7 @@ fn probes_that_are_shared_are_those_of_each_strategy() {
     let pool = Pool::new(Some(2), Priority::Normal).unwrap();
     for kind in [
         TrialKind::Baseline,
-        TrialKind::Alone(Toggle::Probes),
+        TrialKind::Alone(Toggle::LightProbes),
         TrialKind::Without(Toggle::FireAsLight),
     ] {
         let number = trials.iter().position(|trial| trial.kind == kind).unwrap();

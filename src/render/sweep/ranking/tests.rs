@@ -25,7 +25,7 @@ fn gain(toggle: Toggle) -> f64 {
         Toggle::EmissionRatioTracking => 3.0,
         Toggle::MajorantBoost => 0.8,
         Toggle::FireAsLight => 1.0,
-        Toggle::Probes => 10.0,
+        Toggle::LightProbes => 10.0,
     }
 }
 

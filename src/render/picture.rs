@@ -1,4 +1,4 @@
-//! Pictures read from a film.
+//! Pictures read from a film: colors, variance, a layer and figures at one time of the render.
 
 use glam::UVec2;
 use rayon::prelude::*;
@@ -22,8 +22,8 @@ pub struct Picture {
     pub layer: LayerMap,
     /// Samples that every pixel has.
     pub fewest_samples: u32,
-    /// Region that gets all samples, and the samples of its pixel that has fewest.
-    pub focus: Option<(Area, u32)>,
+    /// The region that alone is rendered, and the samples of its pixel that has fewest.
+    pub region: Option<(Area, u32)>,
     /// Variance of the gray mean of each pixel, and the variance of that; row 0 on top, NaN below
     /// two samples; empty unless asked for, and while pixels have no sample.
     pub variance: Vec<[f32; 2]>,
@@ -39,7 +39,7 @@ pub struct Picture {
 /// The data that a picture brings along beside its light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Extras {
-    /// The layer to publish beside the light.
+    /// The layer to read beside the light.
     pub layer: Option<Layer>,
     /// The variance of its pixels.
     pub variance: bool,
