@@ -67,7 +67,7 @@ pub fn render_headless(
         if stop() && !engine.is_finished() {
             break true;
         }
-        match engine.step(&pool, false, &stop) {
+        match engine.step(&pool, false, &stop, &stop) {
             RenderStep::Worked => progress(engine.film(), engine.seconds()),
             RenderStep::Interrupted => {}
             RenderStep::Paused | RenderStep::Done => break false,

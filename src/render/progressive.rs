@@ -102,12 +102,14 @@ impl ProgressiveRender {
         (self.sampler, self.prepared) = (sampler, None);
     }
 
-    /// Does the next piece of work, unless `stop` says so earlier.
+    /// Does the next piece of work, unless `stop` says so earlier. A pilot pass, which would have to
+    /// begin anew, heeds `give_up` instead.
     pub fn step(
         &mut self,
         pool: &Pool,
         paused: bool,
         stop: &(dyn Fn() -> bool + Sync),
+        give_up: &(dyn Fn() -> bool + Sync),
     ) -> RenderStep {
         let work = match self.schedule.next(self.seconds, paused) {
             Next::Work(work) => work,
@@ -117,7 +119,7 @@ impl ProgressiveRender {
         let start = Instant::now();
         // The first sample of a pixel waits for no pilot pass.
         if work.target > 1 && self.prepared.is_none() {
-            match pool.prepare(&*self.sampler, stop) {
+            match pool.prepare(&*self.sampler, give_up) {
                 Ok(prepared) => self.prepared = prepared,
                 Err(failure) => return RenderStep::Failed(failure),
             }
@@ -246,7 +248,7 @@ mod tests {
         let limits = Limits { spp: 2, seconds: None };
         let mut engine = ProgressiveRender::new(Arc::new(Uniform::default()), film, limits, None);
         while !engine.has_picture() {
-            engine.step(&pool, false, &|| false);
+            engine.step(&pool, false, &|| false, &|| false);
         }
         let mut picture = Picture::default();
         engine.read(&pool, Extras { variance: true, ..Extras::default() }, &mut picture);
@@ -292,15 +294,18 @@ mod tests {
         let film = Film::new(UVec2::new(40, 20)).unwrap();
         let mut engine = ProgressiveRender::new(pilot.clone(), film, limits, None);
         while !engine.is_complete() {
-            assert!(matches!(engine.step(&pool, false, &|| false), RenderStep::Worked));
+            assert!(matches!(engine.step(&pool, false, &|| false, &|| false), RenderStep::Worked));
         }
         let questions = || pilot.questions.load(Ordering::Relaxed);
         assert_eq!(questions(), 0);
         let stop = || questions() >= 10;
-        assert!(matches!(engine.step(&pool, false, &stop), RenderStep::Interrupted));
+        assert!(matches!(engine.step(&pool, false, &|| true, &stop), RenderStep::Interrupted));
         assert_eq!((questions(), engine.film().sample_range()), (10, (1, 1)));
+        // Whatever only breaks work off lets the pilot pass come to its end.
+        assert!(matches!(engine.step(&pool, false, &|| true, &|| false), RenderStep::Interrupted));
+        assert!(questions() > QUESTIONS && engine.film().sample_range() == (1, 1));
         while !engine.is_finished() {
-            assert!(matches!(engine.step(&pool, false, &|| false), RenderStep::Worked));
+            assert!(matches!(engine.step(&pool, false, &|| false, &|| false), RenderStep::Worked));
         }
         assert_eq!(engine.film().sample_range(), (2, 2));
     }
@@ -321,7 +326,7 @@ mod tests {
         let limits = Limits { spp: 2, seconds: None };
         let mut engine = ProgressiveRender::new(Arc::new(Faulty), film, limits, None);
         let failure = loop {
-            match engine.step(&pool, false, &|| false) {
+            match engine.step(&pool, false, &|| false, &|| false) {
                 RenderStep::Worked => {}
                 RenderStep::Failed(failure) => break failure,
                 other => panic!("{other:?}"),

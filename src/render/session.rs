@@ -59,7 +59,10 @@ impl Session {
     /// thread (or, if it has nothing to show yet, when it has, or after a second), and
     /// a request that has not begun is dropped.
     pub fn start(&self, request: Request) {
-        self.shared.post(|mailbox| mailbox.request = Some(request));
+        self.shared.post(|mailbox| {
+            mailbox.request = Some(request);
+            self.shared.requested.store(true, Ordering::Relaxed);
+        });
     }
 
     /// Brings the provisional request of that generation the sampler it waits for, or says that

@@ -111,7 +111,7 @@ impl SideInProgress {
             let left = all - self.render.cpu_seconds();
             self.render.set_limits(self.limits(left, pool.threads()));
         }
-        match self.render.step(pool, false, stop) {
+        match self.render.step(pool, false, stop, stop) {
             RenderStep::Worked | RenderStep::Interrupted => {}
             RenderStep::Paused | RenderStep::Done => self.closed = true,
             RenderStep::Failed(failure) => (self.closed, self.failure) = (true, Some(failure)),

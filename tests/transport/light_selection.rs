@@ -14,6 +14,7 @@ use flambeau::{
 use glam::{UVec2, Vec3A};
 
 /// Uneven mist between walls, with fires, lamps and two suns on either side of them.
+#[allow(clippy::too_many_lines, reason = "one scene as text")]
 fn walls() -> String {
     let fires: String = (0..12)
         .map(|i| {

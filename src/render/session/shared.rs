@@ -44,6 +44,8 @@ pub(super) struct Shared {
     /// Whether there is an unread improvement, for which a render that shows nothing yet breaks off
     /// at once.
     pub improved: AtomicBool,
+    /// Whether there is an unread request, for which a pilot pass is given up.
+    pub requested: AtomicBool,
     pub latest: Mutex<Option<Arc<Picture>>>,
     /// Failure that stopped the latest request, with its generation.
     pub failure: Mutex<Option<(u64, Failure)>>,
@@ -59,6 +61,7 @@ impl Shared {
             epoch: AtomicU64::new(0),
             quit: AtomicBool::new(false),
             improved: AtomicBool::new(false),
+            requested: AtomicBool::new(false),
             latest: Mutex::default(),
             failure: Mutex::default(),
             on_publish: Box::new(on_publish),

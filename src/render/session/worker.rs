@@ -124,6 +124,7 @@ impl Worker {
             return false;
         }
         shared.improved.store(false, Ordering::Relaxed);
+        shared.requested.store(false, Ordering::Relaxed);
         self.snapshots.append(&mut mailbox.snapshots);
         self.paused = mailbox.paused;
         self.owes_extras |= mailbox.extras.adds_to(self.extras);
@@ -239,14 +240,15 @@ impl Worker {
             Next::StartOver => return Wait::Nothing,
         }
         let (shared, epoch, begun) = (&self.shared, self.epoch, job.begun);
+        let ends =
+            || shared.quit.load(Ordering::Relaxed) || shared.improved.load(Ordering::Relaxed);
         let stop = || {
             shared.epoch.load(Ordering::Relaxed) != epoch
-                && (before.has_picture
-                    || shared.quit.load(Ordering::Relaxed)
-                    || shared.improved.load(Ordering::Relaxed)
-                    || begun.elapsed() > FIRST_PICTURE_PATIENCE)
+                && (before.has_picture || ends() || begun.elapsed() > FIRST_PICTURE_PATIENCE)
         };
-        let step = job.render.step(&self.pool, next == Next::Rest, &stop);
+        // Messages about the same render would have a pilot pass begin anew, again and again.
+        let give_up = || ends() || shared.requested.load(Ordering::Relaxed);
+        let step = job.render.step(&self.pool, next == Next::Rest, &stop, &give_up);
         let after = job.progress(self.paused);
         let shows = after.shows(job.render.publish_due());
         if shows && !matches!(step, RenderStep::Interrupted) {
