@@ -172,7 +172,6 @@ fn snapshots_are_named_deleted_brought_back_and_there_again_after_a_restart() {
     window.keep("scene full 3");
 
     window.click(Role::Button, "Snapshot scene full");
-    let kept = window.shown_without_cursor();
     window.type_into("Snapshot name", "thin smoke");
     window.type_into("Snapshot note", "for the second shot");
     assert!(window.has_snapshot("thin smoke") && window.has("Snapshot: thin smoke"));
@@ -186,6 +185,9 @@ fn snapshots_are_named_deleted_brought_back_and_there_again_after_a_restart() {
     window.press(Modifiers::NONE, Key::ArrowLeft);
     window.press(Modifiers::NONE, Key::Delete);
     assert!(!window.has_snapshot("scene full 2"));
+    window.click(Role::Button, "Snapshot thin smoke");
+    window.until_it_says("Snapshot: thin smoke");
+    let kept = window.shown_without_cursor();
 
     let mut window = window.restart(&scene);
     window.until_there_is("Snapshot thin smoke");
