@@ -79,3 +79,27 @@ impl Sun {
         self.one_minus_cos > 1e-9
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{math::PathRng, sampling::chi2::Sphere};
+
+    /// Directions have the density that is said, and bring the irradiance across the middle one.
+    #[test]
+    fn counts_follow_the_density_of_the_disk() {
+        for degrees in [0.5_f32, 4.0, 60.0] {
+            let sun = Sun::new(Vec3A::new(0.3, -0.5, -0.8), Rgb::ONE, degrees, true);
+            let sample = |rng: &mut PathRng| {
+                Some(sun.sample(Vec2::new(rng.uniform(), rng.uniform())).direction)
+            };
+            let pdf = |direction| match sun.shows_along(direction) {
+                true => sun.pdf_solid_angle(),
+                false => 0.0,
+            };
+            let half_angle = f64::from(0.5 * degrees).to_radians();
+            let name = format!("sun of {degrees} degrees");
+            Sphere::narrow(sun.direction(), half_angle).assert_follows(&name, sample, pdf);
+        }
+    }
+}

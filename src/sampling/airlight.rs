@@ -55,6 +55,7 @@ impl Airlight {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{math::PathRng, sampling::chi2::Sphere};
 
     /// The density integrates to one and the share of samples in a cone is its integral.
     #[test]
@@ -95,5 +96,17 @@ mod tests {
             sum += direction;
         }
         assert!(sum.truncate().length() < 1.0);
+    }
+
+    #[test]
+    fn counts_follow_the_density() {
+        let axis = Vec3A::new(1.0, -2.0, 0.5).normalize();
+        for g in [-0.7, 0.0, 0.6, 0.95] {
+            let airlight = Airlight::new(axis, g);
+            let sample =
+                |rng: &mut PathRng| Some(airlight.sample(Vec2::new(rng.uniform(), rng.uniform())));
+            let bins = Sphere::narrow(axis, 0.01);
+            bins.assert_follows(&format!("halo of g {g}"), sample, |d| airlight.pdf(d));
+        }
     }
 }

@@ -94,6 +94,7 @@ impl Equiangular {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{math::PathRng, sampling::chi2::assert_numbers_follow};
 
     const RAY: Ray = Ray { origin: Vec3A::ZERO, direction: Vec3A::X };
 
@@ -146,5 +147,24 @@ mod tests {
         }
         assert!(Equiangular::new(&RAY, Vec3A::Y, 0.0, 2.0, 2.0).is_none());
         assert!(Equiangular::new(&RAY, Vec3A::NAN, 0.0, 0.0, 1.0).is_none());
+    }
+
+    /// Beside, before and behind the stretch, and of a stretch without end as far as most draws go.
+    #[test]
+    fn counts_follow_the_density() {
+        let edges: Vec<f32> = (0..=200).map(|i| 0.5 + i as f32 * 3.5 / 200.0).collect();
+        for g in [0.0, 0.5, 0.9] {
+            for point in
+                [Vec3A::new(2.0, 0.3, 0.0), Vec3A::new(-1.0, 0.5, 0.2), Vec3A::new(9.0, 0.0, 2.0)]
+            {
+                for t1 in [4.0, f32::INFINITY] {
+                    let all = Equiangular::new(&RAY, point, g, 0.5, t1).unwrap();
+                    let sample = |rng: &mut PathRng| Some(all.sample(rng.uniform()));
+                    let sample = |rng: &mut PathRng| sample(rng).filter(|t| *t < 4.0);
+                    let name = format!("g {g}, {point}, to {t1}");
+                    assert_numbers_follow(&name, &edges, sample, |t| all.pdf(t));
+                }
+            }
+        }
     }
 }

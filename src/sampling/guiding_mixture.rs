@@ -66,3 +66,30 @@ impl GuidingMixture {
         self.lobes.iter().map(of).sum()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{math::PathRng, sampling::chi2::Sphere};
+
+    /// The density times the shares integrates to their sum, and the kinds are drawn by them.
+    #[test]
+    fn counts_follow_the_mixture() {
+        let axis = Vec3A::new(0.2, 1.0, 0.3).normalize();
+        let mut towards = GuidingMixture::default();
+        towards.add(0.3, GuidingLobe::Airlight(Airlight::new(axis, 0.5)));
+        towards.add(0.2, GuidingLobe::Caustic(VonMisesFisher::new(axis, 40.0)));
+        towards.add(0.25, GuidingLobe::Caustic(VonMisesFisher::new(-axis, 5.0)));
+        towards.add(0.0, GuidingLobe::Caustic(VonMisesFisher::new(Vec3A::X, 100.0)));
+        let share = towards.share();
+        assert_eq!(share, 0.75);
+        let sample = |rng: &mut PathRng| {
+            let pick = rng.uniform();
+            let u = Vec2::new(rng.uniform(), rng.uniform());
+            (pick < share).then(|| towards.sample(pick, u).unwrap())
+        };
+        let bins = Sphere::narrow(axis, 0.01);
+        bins.assert_follows("mixture", sample, |d| towards.pdf_times_share(d));
+        assert!(GuidingMixture::default().sample(0.0, Vec2::ZERO).is_none());
+    }
+}

@@ -42,6 +42,7 @@ mod tests {
     use std::f32::consts::PI;
 
     use super::*;
+    use crate::{math::PathRng, sampling::chi2::Sphere};
 
     /// The density integrates to one and the share of samples in a cone is its integral.
     #[test]
@@ -70,6 +71,18 @@ mod tests {
                 }
             }
             assert!((integral - 1.0).abs() < 2e-3, "{concentration}: {integral}");
+        }
+    }
+
+    #[test]
+    fn counts_follow_the_density() {
+        let axis = Vec3A::new(-1.0, 0.3, -2.0).normalize();
+        for concentration in [0.1, 2.0, 50.0, 1e4] {
+            let fisher = VonMisesFisher::new(axis, concentration);
+            let sample =
+                |rng: &mut PathRng| Some(fisher.sample(Vec2::new(rng.uniform(), rng.uniform())));
+            let bins = Sphere::narrow(axis, 1e-3);
+            bins.assert_follows(&format!("κ {concentration}"), sample, |d| fisher.pdf(d));
         }
     }
 }

@@ -60,3 +60,38 @@ pub fn uniform_disk(u: Vec2) -> Vec2 {
     let (sin_phi, cos_phi) = (TAU * u.y).sin_cos();
     u.x.sqrt() * Vec2::new(cos_phi, sin_phi)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{math::PathRng, sampling::chi2::Sphere};
+
+    fn pair(rng: &mut PathRng) -> Vec2 {
+        Vec2::new(rng.uniform(), rng.uniform())
+    }
+
+    #[test]
+    fn directions_follow_their_densities() {
+        let even = Sphere::even(Vec3A::Z);
+        let sphere = |rng: &mut PathRng| Some(uniform_sphere(pair(rng)));
+        even.assert_follows("sphere", sphere, |_| UNIFORM_SPHERE_PDF);
+        let cosine = |rng: &mut PathRng| Some(cosine_hemisphere(pair(rng)));
+        even.assert_follows("cosine", cosine, |direction| cosine_hemisphere_pdf(direction.z));
+    }
+
+    /// The innermost rings of the bins are the cone's, so that its rim lies between two of them.
+    #[test]
+    fn cones_are_filled_evenly() {
+        for half_angle in [0.001_f64, 0.1, 2.0] {
+            let one_minus_cos = (1.0 - half_angle.cos()) as f32;
+            let within = |direction: Vec3A| direction.truncate().length().atan2(direction.z);
+            let pdf = |direction: Vec3A| match f64::from(within(direction)) < half_angle {
+                true => uniform_cone_pdf(one_minus_cos),
+                false => 0.0,
+            };
+            let cone = |rng: &mut PathRng| Some(uniform_cone(pair(rng), one_minus_cos));
+            let name = format!("cone of {half_angle}");
+            Sphere::narrow(Vec3A::Z, half_angle).assert_follows(&name, cone, pdf);
+        }
+    }
+}

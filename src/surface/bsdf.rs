@@ -146,7 +146,10 @@ mod tests {
     use glam::UVec2;
 
     use super::*;
-    use crate::{math::PathRng, sampling::warp::spherical};
+    use crate::{
+        math::PathRng,
+        sampling::{chi2::Sphere, warp::spherical},
+    };
 
     /// Integrates value, density and the first moment of the density over the hemisphere.
     fn quadrature(bsdf: &Bsdf) -> (Rgb, f32, Vec3A) {
@@ -189,6 +192,27 @@ mod tests {
             }
             assert!((kept - total).abs() < 6e-3, "{material:?}: {kept} {total}");
             assert!((mean - moment).abs().max_element() < 8e-3, "{material:?}: {mean} {moment}");
+        }
+    }
+
+    /// From steep to grazing views; what would leave below the surface is not drawn.
+    #[test]
+    fn counts_follow_the_density() {
+        let reflectance = Rgb::ONE;
+        for (cosine, phi) in [(0.95, 0.3), (0.45, 1.1), (0.1, 4.0)] {
+            let outgoing = spherical(cosine, phi);
+            for material in [
+                Material::Diffuse { reflectance },
+                Material::Conductor { alpha: 0.1, reflectance },
+                Material::Conductor { alpha: 0.4, reflectance },
+                Material::Conductor { alpha: 0.9, reflectance },
+            ] {
+                let bsdf = Bsdf::new(material, Vec3A::Z, outgoing);
+                let sample =
+                    |rng: &mut PathRng| bsdf.sample(Vec2::new(rng.uniform(), rng.uniform()));
+                let name = format!("{material:?} seen at {cosine}");
+                Sphere::even(Vec3A::Z).assert_follows(&name, sample, |d| bsdf.eval(d).1);
+            }
         }
     }
 }

@@ -276,3 +276,63 @@ fn phase(mut medium: MediumRay<'_>, step: &MarchStep) -> PhaseMix {
     }
     medium.phase(step.at)
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::UVec2;
+
+    use super::*;
+    use crate::{math::Ray, sampling::chi2::assert_numbers_follow, transport::Scene};
+
+    const SMOKE: &str = r#"
+        [[volume]]
+        shape = "noise"
+        half_size = 1.0
+        frequency = 2.0
+        contrast = 2.0
+        density = { scale = [1.0, 2.0, 4.0] }
+        albedo = [0.9, 0.7, 0.5]
+        [[volume]]
+        shape = "box"
+        half_size = 0.4
+        translate = [2.0, 0, 0]
+        density = { scale = 1.5 }
+        albedo = 0.8
+    "#;
+
+    /// Distances drawn from the table are as dense as the mean over the channels of what the path's
+    /// color makes of T̂ μ_s, whether the path may go on at the end of the ray or not.
+    #[test]
+    fn draws_follow_the_table() {
+        let scene = Scene::of_text(SMOKE);
+        let ray = Ray::new(glam::Vec3A::new(-3.0, 0.1, 0.2), glam::Vec3A::X);
+        let medium = || scene.world.along(ray, f32::INFINITY);
+        for (throughput, goes_on) in [(Rgb::ONE, false), (Rgb::new(0.2, 0.5, 2.0), true)] {
+            let mut table = MarchTable::default();
+            table.fill(medium(), 4.0, throughput, &mut PathRng::new(0, UVec2::ONE, 0));
+            let reached = if goes_on { mean(table.color * table.transmittance) } else { 0.0 };
+            let total = table.rows.last().unwrap().sum + reached;
+            let row_at = |t: f32| {
+                let inside =
+                    |row: &&MarchRow| (row.step.t0..row.step.t0 + row.step.length).contains(&t);
+                table.rows.iter().find(inside)
+            };
+            let pdf = |t: f32| {
+                row_at(t).map_or(0.0, |row| {
+                    let through = exp_neg(row.mu_t, t - row.step.t0) * row.transmittance;
+                    mean(table.color * row.mu_s * through) / total
+                })
+            };
+            let ends =
+                table.rows.iter().flat_map(|row| [row.step.t0, row.step.t0 + row.step.length]);
+            let mut edges: Vec<f32> = ends.collect();
+            edges.dedup();
+            let draw = |rng: &mut PathRng| match table.draw(medium(), goes_on, rng).event {
+                Event::Scattered { t, .. } => Some(t),
+                _ => None,
+            };
+            let name = format!("table of {throughput}");
+            assert_numbers_follow(&name, &edges, draw, pdf);
+        }
+    }
+}

@@ -150,3 +150,39 @@ impl Vertex {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sampling::airlight::Airlight;
+    use crate::sampling::chi2::Sphere;
+    use crate::sampling::guiding_mixture::GuidingLobe;
+    use crate::sampling::von_mises_fisher::VonMisesFisher;
+
+    /// Directions by chance and towards light, as dense as the mixture that the weight is over.
+    #[test]
+    fn guided_directions_follow_the_mixture() {
+        let axis = Vec3A::new(0.2, 1.0, 0.3).normalize();
+        let mut phase = PhaseMix::default();
+        phase.add(0.6, Rgb::ONE);
+        let vertex = Vertex::volume(Vec3A::ZERO, Vec3A::X, phase);
+        let mut guiding = GuidingMixture::default();
+        guiding.add(0.3, GuidingLobe::Airlight(Airlight::new(axis, 0.5)));
+        guiding.add(0.2, GuidingLobe::Caustic(VonMisesFisher::new(axis, 40.0)));
+        let mixture = |direction| {
+            let by_chance = vertex.eval(direction).1;
+            (1.0 - guiding.share()) * by_chance + guiding.pdf_times_share(direction)
+        };
+        let sample = |rng: &mut PathRng| {
+            let turn = vertex.sample_guided(&guiding, rng).unwrap();
+            let expected = mixture(turn.direction);
+            assert!(
+                (turn.guiding_ratio * turn.pdf_solid_angle - expected).abs() <= 1e-4 * expected
+            );
+            let value = vertex.eval(turn.direction).0.x;
+            assert!((turn.weight.x * expected - value).abs() <= 1e-4 * value);
+            Some(turn.direction)
+        };
+        Sphere::narrow(axis, 0.01).assert_follows("mixture", sample, mixture);
+    }
+}

@@ -106,7 +106,10 @@ mod tests {
     use glam::UVec2;
 
     use super::*;
-    use crate::{math::PathRng, sampling::warp::spherical};
+    use crate::{
+        math::PathRng,
+        sampling::{chi2::Sphere, warp::spherical},
+    };
 
     #[test]
     fn sampled_cosine_has_mean_g() {
@@ -161,5 +164,27 @@ mod tests {
             pdf += p * TAU * 2.0 / n as f32;
         }
         assert!((value - Rgb::ONE).abs().max_element() < 1e-3 && (pdf - 1.0).abs() < 1e-3);
+    }
+
+    #[test]
+    fn counts_follow_the_density() {
+        let forward = Vec3A::new(-0.3, 0.8, 0.1).normalize();
+        let check = |name: &str, mix: &PhaseMix, least: f64| {
+            let sample = |rng: &mut PathRng| {
+                let (pick, u) = (rng.uniform(), Vec2::new(rng.uniform(), rng.uniform()));
+                Some(mix.sample(forward, pick, u))
+            };
+            let bins = Sphere::narrow(forward, least);
+            bins.assert_follows(name, sample, |direction| mix.eval(forward, direction).1);
+        };
+        for g in [0.0, 0.5, 0.9, 0.99, -0.3] {
+            let mut lobe = PhaseMix::default();
+            lobe.add(g, Rgb::ONE);
+            check(&format!("g {g}"), &lobe, 1e-3);
+        }
+        let mut mix = PhaseMix::default();
+        mix.add(0.8, Rgb::new(1.0, 0.2, 0.0));
+        mix.add(-0.4, Rgb::new(0.5, 0.5, 2.0));
+        check("mixture", &mix, 1e-2);
     }
 }

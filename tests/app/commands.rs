@@ -50,8 +50,10 @@ impl Window {
     /// Closes what a command may have opened in front.
     fn close_what_is_open(&mut self) {
         for _ in 0..3 {
-            self.press(Modifiers::NONE, Key::Escape);
+            self.harness.key_press(Key::Escape);
+            self.harness.step();
         }
+        self.settle();
     }
 }
 
@@ -276,6 +278,7 @@ const PROMPTLY: Duration = Duration::from_secs(20);
 #[test]
 fn every_command_has_an_effect() {
     let Some(mut window) = Window::open(BALL) else { return };
+    window.click(Role::Button, "Fixed");
     window.until_finished();
     window.keep("scene full");
     for command in Command::all() {
@@ -313,6 +316,7 @@ fn the_palette_runs_what_it_finds() {
 #[test]
 fn every_key_is_taken_while_strategies_and_snapshots_are_compared() {
     let Some(mut window) = Window::open(BALL) else { return };
+    window.click(Role::Button, "Fixed");
     window.until_finished();
     window.keep("scene full");
     for state in [State::Strategies, State::Snapshot, State::Rectangle] {

@@ -47,6 +47,7 @@ density = { scale = 9.0 }
 #[test]
 fn the_energy_of_cells_has_a_legend_with_numbers() {
     let Some(mut window) = Window::open(BALL) else { return };
+    window.click(Role::Button, "Fixed");
     window.until_finished();
     window.click(Role::DisclosureTriangle, "Diagnostics");
     window.click(Role::Button, "Energy");

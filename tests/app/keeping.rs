@@ -119,6 +119,7 @@ fn what_the_keyboard_goes_to_is_in_sight() {
 #[test]
 fn saving_the_scene_lets_another_one_open() {
     let Some(mut window) = Window::open(BALL) else { return };
+    window.click(Role::Button, "Fixed");
     window.until_finished();
     window.change();
     window.ask_for_other();
@@ -201,6 +202,7 @@ fn a_reset_brings_window_and_display_back_and_nothing_else() {
 #[test]
 fn what_went_well_leaves_by_itself_and_failures_stay() {
     let Some(mut window) = Window::open(BALL) else { return };
+    window.click(Role::Button, "Fixed");
     window.until_finished();
     window.press(Modifiers::COMMAND, Key::L);
     window.type_path("/nowhere/nothing.toml");

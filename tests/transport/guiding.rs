@@ -1,11 +1,11 @@
 //! Scattering guided by probes, by equal angles and towards glow: whatever the guide, one picture.
 
 use crate::common::{
-    self, Expected, REFERENCED, Verdicts, asking, build, every_guide, few_guides, full_name,
-    half_of_strategies, measure_closely, measure_with, with_strategy,
+    CLOSELY, Expected, REFERENCED, Verdicts, asking, build, every_guide, few_guides, full_name,
+    half_of_strategies, measure_closely, measure_to, with_strategy,
 };
 use flambeau::transport::{
-    Scene,
+    PathSample, Scene,
     probes::Probes,
     strategy::{Advanced, Distance, Preset, Strategy},
 };
@@ -115,19 +115,16 @@ fn guides_agree_whatever_else_is_on() {
 fn probes_alone_find_all_that_chance_finds() {
     let text = EMBEDDED.replace("SCALE", "0.8") + "[path]\nmax_scatters = 1\n";
     let scene = build(&text);
-    let estimate = |distance, paths| {
+    let by = |distance| {
         let advanced =
             Advanced { distance, equiangular: false, guide_directions: false, ..asking() };
-        let strategy = Strategy { advanced, ..Preset::Full.strategy() };
-        let estimate = measure_with(&with_strategy(&scene, strategy), paths, |path| path.direct);
-        let weak = |c: usize| estimate.error(c) > common::POWER * estimate.mean[c];
-        assert!(!(0..3).any(weak), "{distance:?}: too weak {estimate:?}");
-        estimate
+        with_strategy(&scene, Strategy { advanced, ..Preset::Full.strategy() })
     };
-    let (chance, probes) =
-        (estimate(Distance::Null, 1_400_000), estimate(Distance::Probes, 400_000));
-    let mut verdicts = Verdicts::default();
-    (0..3).for_each(|c| verdicts.check_equal("first event", &probes, &chance, c));
+    let direct = |path: &PathSample| path.direct;
+    let probes = measure_to(&by(Distance::Probes), 1_000_000, CLOSELY, direct);
+    let mut verdicts = Verdicts::of_power(REFERENCED);
+    let expected = Expected::measured(&probes);
+    verdicts.hold_part("first event", &by(Distance::Null), 3_000_000, &expected, direct);
     verdicts.finish();
 }
 

@@ -88,10 +88,9 @@ fn accumulators_tell_the_noise_between_seeds() {
         let mut strategy = Strategy::default();
         strategy.advanced.low_discrepancy = low_discrepancy;
         let (scene, size) = (Arc::new(with_strategy(&scene, strategy)), UVec2::splat(SIDE));
-        let frame = |seed| {
-            crate::common::prepared(Frame::with_probes(scene.clone(), size, seed, probes.clone()))
-        };
-        let frames: Vec<PreparedFrame> = (0..SEEDS).map(frame).collect();
+        let frame = Frame::with_probes(scene, size, 0, probes.clone());
+        let frame = crate::common::prepared(frame);
+        let frames: Vec<PreparedFrame> = (0..SEEDS).map(|seed| frame.with_seed(seed)).collect();
         let (mut comparison, mut pixels) = (Comparison::of_power(0.03), Vec::new());
         for batch in 0..SIDE * SIDE / BATCH {
             pixels.extend(variances(&frames, samples, batch));

@@ -216,6 +216,7 @@ fn mass(falloff: f32, length: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{math::PathRng, sampling::chi2::assert_numbers_follow};
 
     fn line(pieces: &[RayPiece]) -> DistancePdf {
         let mut builder = DistancePdfBuilder::new();
@@ -295,5 +296,19 @@ mod tests {
         assert!(builder.finish().is_none());
         let light = line(&[RayPiece { scattered: f32::INFINITY, ..ray_piece(0.0, 2.0, 0.0, 1.0) }]);
         assert_eq!(light.pdf(1.0), 0.5);
+    }
+
+    /// Bins end where pieces do.
+    #[test]
+    fn counts_follow_the_density() {
+        let ends = [1.0, 2.0, 2.5, 4.0, 7.0, 8.0, 20.0, 40.0];
+        let parts = |pair: &[f32]| {
+            let [from, to] = [pair[0], pair[1]];
+            (0..24).map(move |i| from + (to - from) * i as f32 / 24.0)
+        };
+        let edges: Vec<f32> = ends.windows(2).flat_map(parts).chain([40.0]).collect();
+        let line = mixed();
+        let sample = |rng: &mut PathRng| Some(line.sample(rng.uniform())).filter(|t| *t < 40.0);
+        assert_numbers_follow("line", &edges, sample, |t| line.pdf(t));
     }
 }

@@ -9,7 +9,9 @@
 //! The information, 1/s², grows with the square of u: t = (u/8.1)².
 //!
 //! - *Clearly wrong*: |z| > 7 at any look, |z| > 5 at the end. All of α but 2.6e-12 a look is spent
-//!   at the end (Haybittle and Peto), so that looking costs no false alarms.
+//!   at the end (Haybittle and Peto), so that looking costs no false alarms. What is found wrong has
+//!   to be so by four times as many samples as well, where there may be more: a few thousand paths
+//!   can all miss what is rare and bright, and then know little of their variance.
 //! - *Clearly right*: |z| ≤ u − a(b), a(b) the normal quantile of 1 − b: the confidence interval of
 //!   the mean excludes deviations of δ and more at level b. A deviation of δ is let through with
 //!   probability b at most. The looks share β = 0.9 %, by the function β (1 − (1 − t)³) of Hwang,

@@ -220,18 +220,6 @@ impl Verdicts {
         }
     }
 
-    /// Holds two estimates of one value against each other.
-    pub fn check_equal(&mut self, label: &str, a: &Estimate, b: &Estimate, channel: usize) {
-        self.count += 1;
-        let error = (a.variance[channel] + b.variance[channel]).sqrt();
-        let z = (a.mean[channel] - b.mean[channel]) / error.max(1e-12);
-        println!("{label}: {} against {}, z {z:.2}", a.mean[channel], b.mean[channel]);
-        if z.abs() > Z_LIMIT {
-            let (a, b) = (a.mean[channel], b.mean[channel]);
-            self.failures.push(format!("{label}: {a} against {b} ± {error}, z {z:.1}"));
-        }
-    }
-
     /// Panics with every failure, of single settings and of all that share a choice or two.
     pub fn finish(mut self) {
         assert!(self.count > 0, "nothing was compared");
