@@ -9,7 +9,7 @@ use crate::app::ui::widgets::significant;
 use crate::transport::profile::ProfileRow;
 
 /// Width of a plot in points, and its height without the axis below.
-const SIZE: egui::Vec2 = egui::vec2(290.0, 112.0);
+const SIZE: egui::Vec2 = egui::vec2(240.0, 112.0);
 /// Room for the numbers beside a plot.
 const AXIS: f32 = 52.0;
 /// Room for the numbers below a plot, and for the name below those.
