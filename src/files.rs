@@ -21,7 +21,7 @@ pub(crate) use target::Target;
 /// content; into a pipe or a device the content is written.
 ///
 /// # Errors
-/// What `write` returns, and where the system refuses; names the file.
+/// The error that `write` returns, or the refusal of the system; names the file.
 pub(crate) fn replace(path: &Path, write: impl FnOnce(&mut File) -> Result<()>) -> Result<()> {
     match Target::of(path)? {
         Target::File(place) => {

@@ -125,10 +125,10 @@ pub fn read_snapshot(path: &Path) -> Result<Snapshot> {
     read_snapshot_unless(path, NO_PROGRESS)
 }
 
-/// The same as [`read_snapshot`] unless it is given up on the way.
+/// Reads a snapshot as [`read_snapshot`] does, unless it is given up on the way.
 ///
 /// # Errors
-/// Those of [`read_snapshot`], and [`Error::Cancelled`] where `progress` says so.
+/// The errors of [`read_snapshot`], and [`Error::Cancelled`] where `progress` says so.
 pub fn read_snapshot_unless(path: &Path, progress: Progress) -> Result<Snapshot> {
     let reader = open(path)?;
     let info = info(path, reader.meta_data())?;

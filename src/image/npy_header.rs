@@ -44,7 +44,7 @@ pub fn float_header(shape: [u32; 3]) -> Vec<u8> {
 /// Splits a file into its header and its data.
 ///
 /// # Errors
-/// What is wrong with the header.
+/// A fault of the header, in words.
 pub fn split(bytes: &[u8]) -> Result<(NpyHeader, &[u8]), Flaw> {
     let flaw = ("", "it ends inside of its header; save it again");
     let rest = bytes.strip_prefix(MAGIC).ok_or(("", "it does not begin as a numpy file"))?;

@@ -41,7 +41,7 @@ pub fn load(source: &str) -> Result<Settings> {
 /// in `cache`.
 ///
 /// # Errors
-/// Those of [`load`], and [`Error::Cancelled`].
+/// The errors of [`load`], and [`Error::Cancelled`].
 pub fn open(
     source: &str,
     overrides: &Overrides,

@@ -70,7 +70,7 @@ pub fn grid_support<V: Voxel>(grid: &SparseGrid<V>) -> Aabb {
 /// A scalar at each point of a volume.
 #[derive(Clone, Debug)]
 pub enum ScalarField {
-    /// The same value everywhere.
+    /// A constant value.
     Constant(f32),
     /// A stored grid.
     Grid(GridField<f32>),
@@ -106,7 +106,7 @@ impl ScalarField {
 /// A color at each point of a volume.
 #[derive(Clone, Debug)]
 pub enum RgbField {
-    /// The same color everywhere.
+    /// A constant color.
     Constant(Rgb),
     /// A scalar field times a color.
     Tinted(ScalarField, Rgb),

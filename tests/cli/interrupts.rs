@@ -1,4 +1,4 @@
-//! What ends a render early, before it has begun to sample.
+//! Requests to end a render before it has begun to sample.
 #![cfg(unix)]
 
 use std::process::{Child, Command, Output, Stdio};

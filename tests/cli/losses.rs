@@ -88,7 +88,7 @@ fn a_snapshot_gives_way_to_its_continuation_alone() {
     assert_eq!(film.sample_range(), (2, 2));
 }
 
-/// What `compare` and `sweep` write has names of its own, and those may be taken.
+/// Files of `compare` and `sweep` have names of their own, which may be taken.
 #[test]
 fn folders_of_results_replace_nothing_that_is_read() {
     let place = Place::new();

@@ -206,7 +206,7 @@ impl Store {
     }
 }
 
-/// Those of `entries`, the oldest first, that have to go so that the rest takes `limit` bytes at
+/// Entries of `entries`, the oldest first, that have to go so that the rest takes `limit` bytes at
 /// most: the oldest without a note, and only where that is not enough those with one; never
 /// `newest`.
 fn victims(entries: &[StoredSnapshot], limit: u64, newest: &str) -> Vec<StoredSnapshot> {

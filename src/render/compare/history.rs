@@ -35,7 +35,7 @@ impl NoiseHistory {
         self.points.push([cpu_seconds, noise]);
     }
 
-    /// The same of a render that may have begun anew, and then begins the history anew.
+    /// Notes the noise of a render that may have begun anew, and then begins the history anew.
     pub fn follow(&mut self, cpu_seconds: f64, noise: f64) {
         match self.points.last() {
             Some(last) if cpu_seconds < last[0] => self.points.clear(),
