@@ -173,7 +173,7 @@ fn settings_of_sides(arguments: &Arguments, shared: &Settings) -> Result<[Settin
 /// counts as preparation.
 fn prepare(scene: &Scene, settings: Settings, progress: Progress) -> Result<Prepared> {
     let before = process_seconds();
-    let scene = Scene { strategy: settings.strategy, ..scene.clone() };
+    let scene = scene.clone().with_strategy(settings.strategy);
     let size = UVec2::from_array(settings.film.size);
     let frame = PreparedFrame::new(Arc::new(scene), size, settings.film.seed, progress)?;
     let setup = process_seconds() - before;

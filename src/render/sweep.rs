@@ -155,7 +155,7 @@ fn prepare_all(
     let mut frames = Vec::with_capacity(rendered.len());
     for (done, (number, trial)) in rendered.iter().enumerate() {
         progress(SweepProgress::Preparing(done, rendered.len()));
-        let scene = Scene { strategy: trial.strategy, ..job.scene.clone() };
+        let scene = job.scene.clone().with_strategy(trial.strategy);
         let frame = pool.install(|| {
             let probes = probes(&scene, &mut known, &go_on)?;
             let (scene, size) = (Arc::new(scene), job.size);
@@ -176,7 +176,7 @@ fn probes(
     known: &mut Vec<(Strategy, Arc<Probes>)>,
     go_on: error::Progress,
 ) -> Result<Option<Arc<Probes>>> {
-    let Some(recipe) = Probes::recipe(&scene.strategy) else { return Ok(None) };
+    let Some(recipe) = Probes::recipe(scene.strategy()) else { return Ok(None) };
     if let Some((_, probes)) = known.iter().find(|(other, _)| *other == recipe) {
         return Ok(Some(probes.clone()));
     }

@@ -37,14 +37,10 @@ pub fn assemble(settings: &Settings, cache: &VolumeCache, progress: Progress) ->
     let used: Vec<_> = instances.iter().map(|instance| instance.volume().clone()).collect();
     cache.retain(&used);
     let world = World::new(instances);
-    Ok(Scene {
-        camera: camera(settings)?,
-        lights: Lights::new(settings.environment.radiance.rgb(), lights, &surfaces, &world),
-        world,
-        surfaces,
-        max_scatters: settings.path.max_scatters,
-        strategy: settings.strategy,
-    })
+    let camera = camera(settings)?;
+    let lights = Lights::new(settings.environment.radiance.rgb(), lights, &surfaces, &world);
+    let max_scatters = settings.path.max_scatters;
+    Ok(Scene::new(camera, world, surfaces, lights, max_scatters, settings.strategy))
 }
 
 /// The camera of the settings.

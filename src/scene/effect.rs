@@ -3,45 +3,15 @@
 use crate::scene::Settings;
 use crate::scene::settings::{
     Albedo, EmissionMode, MaterialKind, MaterialSettings, SurfaceSettings, VolumeSettings,
+    VolumeShape,
 };
-use crate::transport::strategy::{Distance, NeeEvaluation, Strategy};
+use crate::transport::effective::SceneFacts;
+use crate::transport::strategy::Strategy;
 use crate::transport::toggle::Toggle;
-
-/// Reason why most toggles are idle with ray marching.
-const MARCHING: &str =
-    "ray marching (Advanced) collects emission and samples distances in its own way.";
 
 /// Reason why `toggle` makes no difference to noise or cost in this scene; `None` where it does.
 pub fn no_effect(toggle: Toggle, settings: &Settings) -> Option<&'static str> {
-    let strategy = &settings.strategy;
-    if strategy.marches() && toggle != Toggle::FireAsLight {
-        return Some(MARCHING);
-    }
-    if toggle == Toggle::LightProbes {
-        return probes_without_effect(settings);
-    }
-    if !settings.volume.iter().any(emits) {
-        return Some("no volume in this scene emits light.");
-    }
-    match toggle {
-        Toggle::EmissionRatioTracking => None,
-        Toggle::EmissionDecoupling if strategy.emission_ratio_tracking => {
-            Some("ratio tracking already collects the emission, by a walk of its own.")
-        }
-        Toggle::EmissionDecoupling => None,
-        Toggle::MajorantBoost if strategy.advanced.boost_amount <= 0.0 => {
-            Some("the boost amount is 0.")
-        }
-        Toggle::MajorantBoost if !reads_emission_in_steps(settings) => Some(
-            "it needs decoupling, ratio tracking or fire as a light (line), which collect emission \
-             at every step.",
-        ),
-        Toggle::MajorantBoost => None,
-        Toggle::FireAsLight if !turns_light(settings) => {
-            Some("nothing in this scene scatters or reflects light, so fire is only seen directly.")
-        }
-        Toggle::FireAsLight | Toggle::LightProbes => None,
-    }
+    toggle.idle(&settings.strategy, facts(settings))
 }
 
 /// [`no_effect`] if the scene had another strategy.
@@ -50,32 +20,23 @@ pub fn no_effect_with(
     settings: &Settings,
     strategy: &Strategy,
 ) -> Option<&'static str> {
-    no_effect(toggle, &Settings { strategy: *strategy, ..settings.clone() })
+    toggle.idle(strategy, facts(settings))
 }
 
-fn probes_without_effect(settings: &Settings) -> Option<&'static str> {
-    if settings.strategy.advanced.distance == Distance::Null {
-        Some("distances are drawn by null-collision sampling alone (Advanced).")
-    } else if !settings.volume.iter().any(scatters) {
-        Some("no volume in this scene scatters light.")
-    } else {
-        None
+/// What the scene holds for toggles to act on, as far as its settings tell: a scene that is built
+/// from them may hold less, never more.
+fn facts(settings: &Settings) -> SceneFacts {
+    let volumes = || settings.volume.iter();
+    SceneFacts {
+        emits: volumes().any(emits),
+        emits_without_borders: volumes().any(|volume| emits(volume) && has_no_borders(volume)),
+        scatters: volumes().any(scatters),
+        reflects: settings.surface.iter().any(reflects),
     }
 }
 
-/// Whether some walk reads emission at every step, which is what the boost adds steps to.
-fn reads_emission_in_steps(settings: &Settings) -> bool {
-    let strategy = &settings.strategy;
-    strategy.emission_decoupling
-        || strategy.emission_ratio_tracking
-        || (strategy.nee
-            && strategy.advanced.nee_evaluation == NeeEvaluation::Line
-            && turns_light(settings))
-}
-
-/// Whether light can change its direction: only there does a path sample lights.
-fn turns_light(settings: &Settings) -> bool {
-    settings.volume.iter().any(scatters) || settings.surface.iter().any(reflects)
+fn has_no_borders(volume: &VolumeSettings) -> bool {
+    volume.shape == Some(VolumeShape::Everywhere)
 }
 
 fn scatters(volume: &VolumeSettings) -> bool {
@@ -87,6 +48,7 @@ fn scatters(volume: &VolumeSettings) -> bool {
     !albedo_is_black && !volume.density.scale.is_black()
 }
 
+/// Whether the surface reflects light.
 fn reflects(surface: &SurfaceSettings) -> bool {
     match &surface.material {
         Some(material) => {
@@ -99,7 +61,7 @@ fn reflects(surface: &SurfaceSettings) -> bool {
 }
 
 /// Whether light comes out of the volume itself.
-pub fn emits(volume: &VolumeSettings) -> bool {
+pub(super) fn emits(volume: &VolumeSettings) -> bool {
     let emission = &volume.emission;
     match emission.mode {
         EmissionMode::None => false,
@@ -128,7 +90,7 @@ fn absorbs(albedo: &Albedo) -> bool {
 mod tests {
     use super::*;
     use crate::scene::settings::Color;
-    use crate::transport::strategy::{Integrator, Preset};
+    use crate::transport::strategy::Preset;
 
     fn scene(mode: EmissionMode, preset: Preset) -> Settings {
         let mut volume = VolumeSettings::default();
@@ -147,18 +109,6 @@ mod tests {
         ] {
             assert!(no_effect(toggle, &settings).unwrap().contains("emits"));
         }
-    }
-
-    #[test]
-    fn each_toggle_knows_which_other_one_it_depends_on() {
-        let mut settings = scene(EmissionMode::Constant, Preset::Baseline);
-        assert_eq!(no_effect(Toggle::EmissionDecoupling, &settings), None);
-        assert!(no_effect(Toggle::MajorantBoost, &settings).unwrap().contains("needs"));
-        settings.strategy.emission_ratio_tracking = true;
-        assert!(no_effect(Toggle::EmissionDecoupling, &settings).unwrap().contains("ratio"));
-        assert_eq!(no_effect(Toggle::MajorantBoost, &settings), None);
-        settings.strategy.advanced.boost_amount = 0.0;
-        assert!(no_effect(Toggle::MajorantBoost, &settings).is_some());
     }
 
     #[test]
@@ -186,39 +136,6 @@ mod tests {
         floor.material = Some(MaterialSettings::default());
         settings.surface = vec![floor];
         assert_eq!(idle(&settings), None);
-    }
-
-    #[test]
-    fn looking_at_the_fire_along_a_line_is_a_walk_to_boost() {
-        let mut settings = scene(EmissionMode::Constant, Preset::Baseline);
-        settings.volume[0].albedo = Albedo::Gray(0.3);
-        let idle = |settings: &Settings| no_effect(Toggle::MajorantBoost, settings).is_some();
-        assert!(idle(&settings));
-        settings.strategy.nee = true;
-        assert!(!idle(&settings));
-        settings.strategy.advanced.nee_evaluation = NeeEvaluation::Point;
-        assert!(idle(&settings));
-        settings.strategy.advanced.nee_evaluation = NeeEvaluation::Line;
-        settings.volume[0].albedo = Albedo::Gray(0.0);
-        assert!(idle(&settings), "nothing here looks at the fire");
-    }
-
-    #[test]
-    fn ray_marching_leaves_fire_as_a_light_alone() {
-        let mut settings = scene(EmissionMode::Constant, Preset::Full);
-        settings.volume[0].albedo = Albedo::Gray(0.3);
-        settings.strategy.integrator = Integrator::March;
-        for toggle in [
-            Toggle::EmissionDecoupling,
-            Toggle::EmissionRatioTracking,
-            Toggle::MajorantBoost,
-            Toggle::LightProbes,
-        ] {
-            assert!(no_effect(toggle, &settings).unwrap().contains("ray marching"), "{toggle:?}");
-        }
-        assert_eq!(no_effect(Toggle::FireAsLight, &settings), None);
-        settings.volume[0].albedo = Albedo::Gray(0.0);
-        assert!(no_effect(Toggle::FireAsLight, &settings).is_some());
     }
 
     #[test]

@@ -6,6 +6,7 @@ pub mod context;
 mod counts;
 pub mod direct;
 mod distance;
+pub mod effective;
 pub mod emission;
 mod frame;
 mod guiding;

@@ -1,6 +1,8 @@
 //! A scene as light transport sees it.
 
-use super::{camera::Camera, strategy::Strategy};
+use super::camera::Camera;
+use super::effective::SceneFacts;
+use super::strategy::Strategy;
 use crate::{light::Lights, surface::Surface, volume::world::World};
 
 /// Scene data that a path reads: camera, volumes, surfaces, lights and strategy.
@@ -17,8 +19,45 @@ pub struct Scene {
     /// Most real scattering events and reflections of a path; 0 for no limit but
     /// [`path::MOST_VERTICES`](super::path::MOST_VERTICES).
     pub max_scatters: u32,
-    /// Sampling strategy.
-    pub strategy: Strategy,
+    /// The effective sampling strategy, see [`Strategy::effective`].
+    pub(in crate::transport) strategy: Strategy,
+}
+
+impl Scene {
+    /// A scene with the parts that the fields of the same names describe, and a strategy, of which
+    /// it keeps the part that acts in it.
+    pub fn new(
+        camera: Camera,
+        world: World,
+        surfaces: Vec<Surface>,
+        lights: Lights,
+        max_scatters: u32,
+        strategy: Strategy,
+    ) -> Self {
+        Self { camera, world, surfaces, lights, max_scatters, strategy }.with_strategy(strategy)
+    }
+
+    /// The same scene with another strategy, of which it keeps the part that acts in it.
+    pub fn with_strategy(self, strategy: Strategy) -> Self {
+        let strategy = strategy.effective(self.facts());
+        Self { strategy, ..self }
+    }
+
+    /// The effective strategy: toggles that change nothing in this scene have one position.
+    pub fn strategy(&self) -> &Strategy {
+        &self.strategy
+    }
+
+    /// What the scene holds for toggles to act on.
+    pub fn facts(&self) -> SceneFacts {
+        let mut volumes = self.world.instances().iter().map(|instance| instance.volume());
+        SceneFacts {
+            emits: self.world.emits(),
+            emits_without_borders: self.world.emits_beyond_lights(),
+            scatters: volumes.any(|volume| volume.properties().scatters()),
+            reflects: self.surfaces.iter().any(Surface::reflects),
+        }
+    }
 }
 
 #[cfg(test)]

@@ -148,7 +148,7 @@ impl PlacerState {
     /// those that no strategy of the same scene could use.
     fn known(&mut self, built: &BuiltScene) -> Option<Option<Arc<Probes>>> {
         self.ready = self.ready.take().filter(|(source, _)| same_places(source, built));
-        if Probes::recipe(&built.settings.strategy).is_none() {
+        if Probes::recipe(built.scene.strategy()).is_none() {
             return Some(None);
         }
         let (source, probes) = self.ready.as_mut().filter(|(source, _)| same(source, built))?;
@@ -197,8 +197,7 @@ fn request(
 
 /// Whether two scenes have the same probes.
 fn same(a: &BuiltScene, b: &BuiltScene) -> bool {
-    Probes::recipe(&a.settings.strategy) == Probes::recipe(&b.settings.strategy)
-        && same_places(a, b)
+    Probes::recipe(a.scene.strategy()) == Probes::recipe(b.scene.strategy()) && same_places(a, b)
 }
 
 /// Whether two scenes would have the same probes with the same strategy.

@@ -40,7 +40,7 @@ fn swept(
         let idle = toggle == Toggle::EmissionDecoupling && strategy.emission_ratio_tracking;
         idle.then_some("ratio tracking collects it")
     };
-    let trials = plan(&scene.strategy, &idle);
+    let trials = plan(scene.strategy(), &idle);
     let pool = Pool::new(Some(threads), Priority::Normal).unwrap();
     let job = SweepJob { scene: &scene, trials: &trials, size: SIZE, seed: 3, amount };
     let swept = sweep(&job, &pool, interrupt, progress);
@@ -93,7 +93,7 @@ fn probes_that_are_shared_are_those_of_each_strategy() {
         TrialKind::Without(Toggle::FireAsLight),
     ] {
         let number = trials.iter().position(|trial| trial.kind == kind).unwrap();
-        let scene = Scene { strategy: trials[number].strategy, ..scene() };
+        let scene = scene().with_strategy(trials[number].strategy);
         let frame: Arc<dyn PixelSampler> =
             Arc::new(Frame::new(Arc::new(scene), SIZE, 3, NO_PROGRESS).unwrap());
         let mut alone = [SideInProgress::new(frame, SIZE, amount).unwrap()];

@@ -46,6 +46,7 @@ fn quad(center: Vec3A, half_u: [f32; 3], half_v: [f32; 3]) -> Shape {
 fn material(settings: &MaterialSettings) -> Material {
     let reflectance = settings.reflectance().rgb();
     match settings.kind {
+        _ if reflectance == Rgb::ZERO => Material::Black,
         MaterialKind::Diffuse => Material::Diffuse { reflectance },
         MaterialKind::Conductor => Material::Conductor { alpha: settings.alpha(), reflectance },
         MaterialKind::Black => Material::Black,

@@ -12,6 +12,7 @@ use crate::error::{Error, Progress, Result};
 use crate::math::Rgb;
 use crate::scene::VolumeCache;
 use crate::scene::cache::{BuiltVolume, VolumeFile};
+use crate::scene::effect::emits;
 use crate::scene::settings::{Albedo, EmissionMode, Extent, Normalize, VolumeSettings};
 use crate::volume::emission::{Blackbody, ColorRamp, Emission};
 use crate::volume::field::{RgbField, ScalarField};
@@ -143,6 +144,8 @@ fn properties(
         Albedo::Grid(named) => source.rgb(&named.grid, &format!("{key}.albedo.grid"))?,
     };
     let emission = emission(source, settings, &format!("{key}.emission.grid"))?;
+    // Emission of zero needs no walks, but its grid must be there all the same.
+    let emission = if emits(settings) { emission } else { Emission::None };
     let density_scale = settings.density.scale.rgb();
     Ok(MediumProperties { density, density_scale, albedo, g: settings.phase.g, emission })
 }

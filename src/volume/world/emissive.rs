@@ -18,8 +18,12 @@ impl Emissive {
             (0..instances.len() as u32).filter(|&i| instances[i as usize].emits()).collect();
         let boxes: Vec<Aabb> =
             indices.iter().map(|&i| instances[i as usize].emission_bounds()).collect();
-        let unsampled =
-            instances.iter().any(|i| !i.emits() && i.volume().properties().emission.is_some());
+        let is_unsampled = |instance: &Instance| {
+            let bounds = instance.bounds();
+            let ends = bounds.min.is_finite() && bounds.max.is_finite();
+            instance.volume().properties().emission.is_some() && !ends
+        };
+        let unsampled = instances.iter().any(is_unsampled);
         Self { indices, hierarchy: Bvh::new(&boxes), unsampled }
     }
 
