@@ -11,7 +11,7 @@ use flambeau::{
     scene::{self, Overrides, VolumeCache},
     transport::{
         PathSample, PreparedFrame, Scene, shadow,
-        strategy::{Preset, Strategy, TransmittanceEstimator},
+        strategy::{Preset, TransmittanceEstimator},
     },
 };
 use glam::{UVec2, Vec3A};
@@ -39,7 +39,7 @@ fn explosion(preset: Preset) -> Scene {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("assets");
     let settings = scene::parse(text, "bench", &folder, &Overrides::default()).unwrap();
     let scene = flambeau::scene::assemble(&settings, &VolumeCache::default(), NO_PROGRESS).unwrap();
-    Scene { strategy: Strategy { ..preset.strategy() }, ..scene }
+    scene.with_strategy(preset.strategy())
 }
 
 fn rays(scene: &Scene) -> Vec<Ray> {

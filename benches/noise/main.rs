@@ -3,10 +3,12 @@
 //! `cargo bench --bench noise -- [TABLE] [SCENE ...] [--quick]` prints a table per scene with one
 //! row per strategy: toggle upon toggle, or with `modes` the modes of the majorant boost by their
 //! amounts, with `distances` the ways to choose where a ray scatters, with `walks` the estimators
-//! of transmittance and the trackers. `-- --list` names the scenes.
+//! of transmittance and the trackers. `never-worse` holds the full preset against every combination
+//! of the toggles, and against another build with `--other`. `-- --list` names the scenes.
 //! All of it takes an hour of CPU time, `--quick` some minutes.
 
 mod measure;
+mod never_worse;
 mod rows;
 mod scenes;
 mod table;
@@ -47,6 +49,9 @@ struct Arguments {
     /// Name the scenes.
     #[arg(long)]
     list: bool,
+    /// With `never-worse`: the program of another build, whose combinations take part.
+    #[arg(long)]
+    other: Option<std::path::PathBuf>,
     /// Passed by `cargo bench`; without it, as in `cargo test`, scenes are built but not measured.
     #[arg(long, hide = true)]
     bench: bool,
@@ -63,14 +68,19 @@ impl Arguments {
         }
     }
 
+    /// The table that is asked for.
+    fn table(&self) -> Table {
+        self.filters.iter().find_map(|filter| Table::named(filter)).unwrap_or(Table::Toggles)
+    }
+
     /// The requested scenes and rows.
     fn selection(&self) -> Vec<(BenchScene, Vec<Row>)> {
-        let word = self.filters.iter().find_map(|filter| Table::named(filter));
-        let table = word.unwrap_or(Table::Toggles);
+        let table = self.table();
         let filters: Vec<&String> =
             self.filters.iter().filter(|filter| Table::named(filter).is_none()).collect();
         let chosen = |scene: &BenchScene| {
-            let all = filters.is_empty() && scene.tables.contains(&table);
+            let in_table = scene.tables.contains(&table) || table == Table::NeverWorse;
+            let all = filters.is_empty() && in_table;
             all || filters.iter().any(|filter| answers_to(scene.name, filter))
         };
         let named = |row: &Row| {
@@ -90,6 +100,15 @@ fn main() {
     let selection = arguments.selection();
     if arguments.list {
         selection.iter().for_each(|(scene, _)| println!("{:<16} {}", scene.name, scene.shows));
+        return;
+    }
+    if arguments.bench && arguments.table() == Table::NeverWorse {
+        never_worse::head();
+        let effort = never_worse::Effort::new(arguments.quick);
+        for (scene, _) in selection {
+            let Some(built) = scene.build() else { continue };
+            never_worse::print(&scene, &built, effort, arguments.other.as_deref());
+        }
         return;
     }
     let plan = arguments.plan();

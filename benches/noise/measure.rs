@@ -4,13 +4,14 @@ use std::sync::{Arc, atomic::AtomicBool};
 
 use flambeau::{
     cli::cpu_time::process_seconds,
+    error::NO_PROGRESS,
     render::{
         RenderJob,
         estimate::{PixelEstimate, gray},
         render_headless,
         schedule::Limits,
     },
-    transport::{Frame, PixelSampler, Scene, probes::Probes},
+    transport::{PreparedFrame, Scene},
 };
 use glam::UVec2;
 use rayon::prelude::*;

@@ -66,7 +66,16 @@ pub fn all() -> Vec<BenchScene> {
         set,
         ..peers(name, shows, "embedded.toml")
     };
+    let shipped =
+        |name, shows, file| BenchScene { tables: &[Table::NeverWorse], ..own(name, shows, file) };
     vec![
+        shipped("torch", "the torch behind smoke that ships", "../../../scenes/torch.toml"),
+        shipped("campfire", "the campfire that ships", "../../../scenes/campfire.toml"),
+        shipped("explosion", "the explosion that ships", "../../../scenes/explosion.toml"),
+        shipped("shipped_fog", "the fire in fog that ships", "../../../scenes/fog.toml"),
+        shipped("shipped_cloud", "the cloud that ships", "../../../scenes/cloud.toml"),
+        shipped("plume", "the plume that ships", "../../../scenes/plume.toml"),
+        peers("peers_cloud", "a white cloud under an even sky", "peers_cloud.toml"),
         modes(peers("fire_absorb", "a flame that only absorbs", "fire_absorb.toml")),
         peers("fire_on_floor", "a flame, a floor, a glossy sphere", "fire_on_floor.toml"),
         modes(own("thin_fire", "fire with hardly any soot", "thin_fire.toml")),
@@ -140,12 +149,33 @@ impl BenchScene {
         }
     }
 
+    /// The scene file, and the settings to change in it, as the command line takes both.
+    pub fn on_disk(&self) -> Option<(PathBuf, Vec<String>)> {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let file = root.join(SCENES).join(self.file);
+        let mut sets: Vec<String> = self.set.iter().map(|&set| set.to_owned()).collect();
+        if self.folder == Folder::Peers {
+            let folder = shared(root).join("peers");
+            let settings = self.settings(&file, &folder).ok()?;
+            let volumes = settings.volume.iter().enumerate();
+            sets.extend(volumes.filter_map(|(index, volume)| {
+                let file = volume.file.as_ref()?;
+                Some(format!("volume.{index}.file=\"{}\"", folder.join(file).display()))
+            }));
+        }
+        Some((file, sets))
+    }
+
     fn read(&self, file: &Path, folder: &Path) -> flambeau::error::Result<Scene> {
+        let settings = self.settings(file, folder)?;
+        flambeau::scene::assemble(&settings, &VolumeCache::default(), NO_PROGRESS)
+    }
+
+    fn settings(&self, file: &Path, folder: &Path) -> flambeau::error::Result<scene::Settings> {
         let text = std::fs::read_to_string(file)
             .map_err(|error| flambeau::error::Error::io(file, error))?;
         let set = self.set.iter().map(|&set| set.to_owned()).collect();
-        let settings = scene::parse(&text, self.file, folder, &Overrides { preset: None, set })?;
-        flambeau::scene::assemble(&settings, &VolumeCache::default(), NO_PROGRESS)
+        scene::parse(&text, self.file, folder, &Overrides { preset: None, set })
     }
 }
 

@@ -55,7 +55,7 @@ pub fn print(scene: &BenchScene, built: &Scene, rows: &[Row], plan: &Plan) {
     println!("|---{}|", "|--:".repeat(COLUMNS.len() - 1));
     let (mut first, left_out) = (None, scene.left_out);
     for row in rows {
-        let scene = Arc::new(Scene { strategy: row.strategy, ..built.clone() });
+        let scene = Arc::new(built.clone().with_strategy(row.strategy));
         let noise = measure::measure(&scene, plan, left_out);
         let first = first.get_or_insert([noise.variance, noise.efficiency()]);
         print_cells(&cells(row, &noise, *first));

@@ -11,6 +11,8 @@ pub enum Table {
     Distances,
     /// Estimators of transmittance, and trackers.
     Walks,
+    /// The full preset against every combination of the toggles.
+    NeverWorse,
 }
 
 impl Table {
@@ -20,6 +22,7 @@ impl Table {
             "modes" => Some(Self::Modes),
             "distances" => Some(Self::Distances),
             "walks" => Some(Self::Walks),
+            "never-worse" => Some(Self::NeverWorse),
             _ => None,
         }
     }
