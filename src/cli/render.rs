@@ -27,7 +27,7 @@ use crate::render::estimate::samples_per_pixel;
 use crate::render::schedule::Limits;
 use crate::render::{Film, FilmStats, Headless, RenderJob, render_headless};
 use crate::scene::{self, Settings, VolumeCache};
-use crate::transport::Frame;
+use crate::transport::{Frame, PixelSampler};
 
 /// Samples a pixel where neither the command line nor the scene says how many.
 const DEFAULT_SPP: u32 = 64;
@@ -78,17 +78,21 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
         None => None,
     };
     let scene = scene::assemble(&settings, &cache, &go_on)?;
-    let cpu_setup = process_seconds();
-
     let (film, before) = match resumed {
         Some(Snapshot { film, header }) => (Some(film), spent_before(&header)),
         None => (None, Spent::default()),
     };
     let size = UVec2::from_array(settings.film.size);
     let frame = Frame::new(Arc::new(scene), size, settings.film.seed, &go_on)?;
+    // A single sample needs no pilot pass.
+    let sampler: Arc<dyn PixelSampler> = match limits.spp {
+        1 => Arc::new(frame),
+        _ => Arc::new(frame.prepared(&go_on)?),
+    };
+    let cpu_setup = process_seconds();
     let paths_before = film.as_ref().map_or(0, |film| film.totals.paths);
     let job = RenderJob {
-        sampler: Arc::new(frame),
+        sampler,
         size,
         limits: limits_left(limits, start),
         resume: film,

@@ -65,17 +65,18 @@ impl Observer for Log {
                     triple(throughput)
                 )
             }
-            PathStep::Emission { contribution } => {
+            PathStep::Emission { contribution, .. } if contribution == Vec3A::ZERO => return,
+            PathStep::Emission { contribution, .. } => {
                 format!("    volume emission, adds {}", triple(contribution))
             }
-            PathStep::End { contribution } => {
+            PathStep::End { contribution, .. } => {
                 format!("    end of the ray, adds {}", triple(contribution))
             }
             PathStep::Absorbed { point } => format!("    absorbed at {}", triple(point)),
             PathStep::Vertex { vertex, throughput } => {
                 format!("    {}, throughput {}", describe(vertex), triple(throughput))
             }
-            PathStep::Light { contribution } => {
+            PathStep::Light { contribution, .. } => {
                 format!("    sampled light, adds {}", triple(contribution))
             }
         };

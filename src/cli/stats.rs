@@ -18,7 +18,7 @@ use crate::transport::strategy::Strategy;
 pub struct Spent {
     /// Wall clock, from the start of the program to the last sample.
     pub wall: f64,
-    /// CPU time of reading and building the scene.
+    /// CPU time of setting up: reading and building the scene, placing the probes, the pilot pass.
     pub cpu_setup: f64,
     /// CPU time of rendering.
     pub cpu_render: f64,

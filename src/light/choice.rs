@@ -6,10 +6,21 @@ use super::light_scores::LightProbabilities;
 /// The lights that take part in the choice, and the method of choosing one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightChoice {
-    /// Whether emissive volumes take part.
-    pub volumes: bool,
+    /// Lights that take part.
+    pub among: LightGroup,
     /// Method of the choice.
     pub by: By,
+}
+
+/// Some of the lights of a scene.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LightGroup {
+    /// All lights.
+    All,
+    /// Emissive volumes.
+    Fires,
+    /// All lights but emissive volumes.
+    Lamps,
 }
 
 /// Method of choosing a light.

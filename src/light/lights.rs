@@ -3,7 +3,7 @@
 
 use glam::Vec3A;
 
-use super::choice::{By, ChosenLight, LightChoice};
+use super::choice::{By, ChosenLight, LightChoice, LightGroup};
 use super::emitter::{Emitter, Receiver};
 use super::kinds::Light;
 use super::light_scores::LightScores;
@@ -22,7 +22,8 @@ pub struct Lights {
     light_of_surface: Vec<Option<u32>>,
     light_of_instance: Vec<Option<u32>>,
     all: Selector,
-    without_volumes: Selector,
+    fires: Selector,
+    lamps: Selector,
 }
 
 impl Lights {
@@ -42,14 +43,15 @@ impl Lights {
                 lights.push(Light::Surface { index, shape, radiance });
             }
         }
-        let without_volumes = Selector::new(&lights, world);
+        let first_fire = lights.len();
         let mut light_of_instance = vec![None; world.instances().len()];
         for &instance in world.emissive() {
             light_of_instance[instance as usize] = Some(lights.len() as u32);
             lights.push(Light::Volume(instance));
         }
-        let all = Selector::new(&lights, world);
-        Self { environment, lights, light_of_surface, light_of_instance, all, without_volumes }
+        let [all, fires, lamps] = [0..lights.len(), first_fire..lights.len(), 0..first_fire]
+            .map(|group| Selector::new(&lights, group, world));
+        Self { environment, lights, light_of_surface, light_of_instance, all, fires, lamps }
     }
 
     /// The light that `pick`, in [0, 1), chooses for a receiver; `None` where no light can
@@ -60,18 +62,28 @@ impl Lights {
         choice: &LightChoice,
         pick: f64,
     ) -> Option<ChosenLight<'_>> {
-        let (index, probability) = self.selector(choice.volumes).choose(to, &choice.by, pick)?;
+        let (index, probability) = self.selector(choice.among).choose(to, &choice.by, pick)?;
         Some(ChosenLight { index, light: self.lights.get(index as usize)?, probability })
     }
 
     /// Probability with which [`Lights::choose`] draws a light, by its index in the scene.
     pub fn probability(&self, light: u32, to: &Receiver, choice: &LightChoice) -> f32 {
-        self.selector(choice.volumes).probability(light, to, &choice.by)
+        self.selector(choice.among).probability(light, to, &choice.by)
     }
 
-    /// Number of lights to choose from, with or without emissive volumes.
-    pub fn len(&self, volumes: bool) -> usize {
-        self.selector(volumes).len()
+    /// Number of lights to choose from.
+    pub fn len(&self, among: LightGroup) -> usize {
+        self.selector(among).len()
+    }
+
+    /// Rough share, 0 to 1, of fires in the unoccluded irradiance at a receiver; 0 without lights.
+    pub fn share_of_fires(&self, to: &Receiver) -> f32 {
+        if self.lamps.len() == 0 || self.fires.len() == 0 {
+            return if self.fires.len() > 0 { 1.0 } else { 0.0 };
+        }
+        let [fires, lamps] = [self.fires.total(to), self.lamps.total(to)];
+        let share = fires / (fires + lamps);
+        if share.is_finite() { share } else { 0.5 }
     }
 
     /// Rough irradiance of a light at the receiver, if unoccluded.
@@ -85,15 +97,15 @@ impl Lights {
         &self,
         scores: &LightScores,
         to: &Receiver,
-        volumes: bool,
+        among: LightGroup,
         value: impl Fn(Vec3A) -> f32,
     ) -> LightChoice {
-        let selector = self.selector(volumes);
+        let selector = self.selector(among);
         let shares = scores.at(|light| {
             let guess = selector.guess(light, to);
             guess.map_or(0.0, |(irradiance, direction)| irradiance * value(direction))
         });
-        LightChoice { volumes, by: By::Shares(shares) }
+        LightChoice { among, by: By::Shares(shares) }
     }
 
     /// Density over solid angle with which a light sample at a receiver has the direction to `hit`
@@ -117,7 +129,7 @@ impl Lights {
     /// Probability with which the emissive volume `instance` is chosen from a receiver.
     pub fn probability_of_volume(&self, instance: u32, to: &Receiver, choice: &LightChoice) -> f32 {
         match self.light_of_instance.get(instance as usize) {
-            Some(Some(light)) => self.selector(choice.volumes).probability(*light, to, &choice.by),
+            Some(Some(light)) => self.selector(choice.among).probability(*light, to, &choice.by),
             _ => 0.0,
         }
     }
@@ -140,12 +152,21 @@ impl Lights {
         })
     }
 
+    /// Whether there are suns, whose disks are seen at the end of rays.
+    pub fn has_suns(&self) -> bool {
+        self.all.suns().next().is_some()
+    }
+
     /// Summaries of all lights at finite distances.
     pub fn emitters(&self, world: &World) -> Vec<Emitter> {
         self.lights.iter().filter_map(|light| light.emitter(world)).collect()
     }
 
-    fn selector(&self, volumes: bool) -> &Selector {
-        if volumes { &self.all } else { &self.without_volumes }
+    fn selector(&self, among: LightGroup) -> &Selector {
+        match among {
+            LightGroup::All => &self.all,
+            LightGroup::Fires => &self.fires,
+            LightGroup::Lamps => &self.lamps,
+        }
     }
 }

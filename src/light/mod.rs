@@ -12,7 +12,7 @@ mod selector;
 mod sun;
 mod tree;
 
-pub use choice::{By, ChosenLight, LightChoice};
+pub use choice::{By, ChosenLight, LightChoice, LightGroup};
 pub use emitter::{Emitter, Receiver};
 pub use kinds::Light;
 pub use light_scores::{LightProbabilities, LightScores, Visibility};

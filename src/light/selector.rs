@@ -1,5 +1,7 @@
 //! Choosing one light among many: suns by their irradiance, the rest through the hierarchy.
 
+use std::ops::Range;
+
 use glam::Vec3A;
 
 use super::choice::By;
@@ -37,10 +39,15 @@ enum LeafPlace {
 }
 
 impl Selector {
-    pub(super) fn new(lights: &[Light], world: &World) -> Self {
+    /// Chooses among the `group` of a scene's `lights`.
+    pub(super) fn new(lights: &[Light], group: Range<usize>, world: &World) -> Self {
         let (mut suns, mut placed, mut emitters) = (Vec::new(), Vec::new(), Vec::new());
         let mut places = Vec::with_capacity(lights.len());
         for (index, light) in lights.iter().enumerate() {
+            if !group.contains(&index) {
+                places.push(LeafPlace::Nowhere);
+                continue;
+            }
             let index = index as u32;
             places.push(match (light, light.emitter(world)) {
                 (Light::Sun(sun), _) => {
@@ -166,8 +173,8 @@ impl Selector {
         }
     }
 
-    /// Sum of the importances of all lights.
-    fn total(&self, to: &Receiver) -> f32 {
+    /// Sum of the importances of all lights: about the irradiance at a receiver, unoccluded.
+    pub(super) fn total(&self, to: &Receiver) -> f32 {
         self.suns.iter().map(|sun| sun.importance).sum::<f32>() + self.tree.importance(to)
     }
 }

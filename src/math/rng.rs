@@ -16,6 +16,10 @@ pub const ACCUMULATORS: usize = 8;
 /// Vertices of a branch whose slots are spread evenly. Later ones add up over so many dimensions
 /// that there is nothing left to gain.
 const STRATIFIED_VERTICES: u32 = 4;
+/// Rows of slots of a vertex, see [`Slot`].
+const ROWS: u32 = 5;
+/// Rows of slots of all stratified vertices of both branches.
+const ALL_ROWS: u32 = 2 * STRATIFIED_VERTICES * ROWS;
 
 /// Use of a random number. Slots that shape the same part of a path share a Sobol sequence; those
 /// of different rows are independent:
@@ -26,6 +30,7 @@ const STRATIFIED_VERTICES: u32 = 4;
 /// | `Distance` | `GuidedDistance` | `DirectionPick` | `TransmittanceB` |
 /// | `LightX` | `LightY` | `LightCell` | `LightPick` |
 /// | `LightEmission` | `LightTransmittanceA` | `LightZ` | `LightTransmittanceB` |
+/// | `FireCount` | `LampCount` | `WalkCount` | `GuidedCount` |
 ///
 /// The first number of a row and the second make up the best pair. The camera has the slots
 /// `Pixel*`, every other vertex the slots `Direction*` in their place: both choose the ray that
@@ -63,6 +68,14 @@ pub enum Slot {
     LightTransmittanceA,
     /// Second jitter of the transmittance estimate along the shadow ray.
     LightTransmittanceB,
+    /// Rounding of the number of light samples of fires.
+    FireCount,
+    /// Rounding of the number of light samples of other lights.
+    LampCount,
+    /// Rounding of the number of emission walks along the ray that leaves the vertex.
+    WalkCount,
+    /// Rounding of the number of guided flights along the ray that leaves the vertex.
+    GuidedCount,
     /// Choice of a lobe of the phase function or material to scatter by; not at vertex 0.
     DirectionPick,
     /// First coordinate of the scattered direction; not at vertex 0.
@@ -91,6 +104,10 @@ impl Slot {
             Self::LightTransmittanceA => (3, 1),
             Self::LightZ => (3, 2),
             Self::LightTransmittanceB => (3, 3),
+            Self::FireCount => (4, 0),
+            Self::LampCount => (4, 1),
+            Self::WalkCount => (4, 2),
+            Self::GuidedCount => (4, 3),
         }
     }
 }
@@ -113,6 +130,8 @@ pub struct PathRng {
     index: u32,
     /// Number of the vertex that the slots belong to.
     vertex: u32,
+    /// Number of the light sample that the slots `Light*` belong to.
+    light_sample: u32,
     /// Number of vertices with stratified slots, both branches counted.
     stratified_vertices: u32,
     /// The row that `shuffled` is for, by vertex; none yet where it is the largest number.
@@ -151,6 +170,7 @@ impl PathRng {
             key: 0,
             index: 0,
             vertex: 0,
+            light_sample: 0,
             stratified_vertices: 0,
             shuffled_row: u32::MAX,
             shuffled: 0,
@@ -171,8 +191,15 @@ impl PathRng {
         self.vertex = if stratified { STRATIFIED_VERTICES + index } else { u32::MAX };
     }
 
+    /// Begins light sample `index` of the present vertex: the slots `Light*` mean that sample's
+    /// from now on. Each sample has numbers of its own, whichever others are drawn.
+    #[inline]
+    pub fn enter_light_sample(&mut self, index: u32) {
+        self.light_sample = index;
+    }
+
     /// The number in [0, 1) for `slot` of the present vertex, in steps of 2⁻²⁴. Ask for it at most
-    /// once a vertex: in the first vertices it would be the same number again.
+    /// once a vertex, or once a light sample: in the first vertices it would be the same number again.
     #[inline]
     pub fn at(&mut self, slot: Slot) -> f32 {
         if self.vertex < self.stratified_vertices {
@@ -223,7 +250,11 @@ impl PathRng {
     #[inline]
     fn stratified_bits(&mut self, slot: Slot) -> u32 {
         let (row, dimension) = slot.place();
-        let row = self.vertex * 4 + row;
+        let row = match row {
+            // A light sample has rows of its own.
+            2 | 3 => self.vertex * ROWS + row + ALL_ROWS * self.light_sample,
+            _ => self.vertex * ROWS + row,
+        };
         if row != self.shuffled_row {
             self.shuffled_row = row;
             self.shuffled = match self.index {
@@ -326,7 +357,7 @@ mod tests {
         assert!((sum / f64::from(n) - 1.0).abs() < 5e-3);
     }
 
-    const SLOTS: [Slot; 18] = [
+    const SLOTS: [Slot; 22] = [
         Slot::PixelX,
         Slot::PixelY,
         Slot::Emission,
@@ -345,6 +376,10 @@ mod tests {
         Slot::DirectionPick,
         Slot::DirectionX,
         Slot::DirectionY,
+        Slot::FireCount,
+        Slot::LampCount,
+        Slot::WalkCount,
+        Slot::GuidedCount,
     ];
 
     /// The number of a slot, at a vertex that has it.

@@ -1,6 +1,7 @@
 //! Everything that was prepared for the paths of a picture.
 
 use super::emission::EmissionEstimator;
+use super::learned_counts::LearnedCounts;
 use super::probes::{Brightness, Probes};
 use super::strategy::Strategy;
 
@@ -14,16 +15,15 @@ pub struct PathContext<'s> {
     pub probes: Option<&'s Probes>,
     /// Mean in-scattered radiance over the film, estimated from the probes.
     pub brightness: Brightness,
-    /// Scale of the number of guided flights of a camera ray, relative to what the probes propose;
-    /// 0 switches guided flights off.
-    pub flights_scale: f32,
+    /// Expected counts that the pilot pass learned.
+    pub counts: LearnedCounts,
 }
 
 impl<'s> PathContext<'s> {
     /// Probes that guide scattering distances, and the weight window with them; `None` where the
     /// strategy does not guide, or where the pilot pass found that guided flights gain nothing.
     pub(super) fn probes_for_distances(&self, strategy: &Strategy) -> Option<&'s Probes> {
-        self.probes_for_directions(strategy).filter(|_| self.flights_scale > 0.0)
+        self.probes_for_directions(strategy).filter(|_| self.counts.guided_flights > 0.0)
     }
 
     /// Probes that guide directions at vertices; `None` where the strategy does not guide. The

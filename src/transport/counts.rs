@@ -4,12 +4,13 @@
 //! | technique | rule |
 //! |---|---|
 //! | guided flights of a camera ray | as the radiance scattered into it, times the pilot's scale |
-//! | light samples (next-event estimation) | one |
+//! | light samples of fires, of other lights; emission walks | learned by the pilot: [`super::learned_counts`] |
+//! | light at the end of a ray | by arrival or by transmittance, learned by the pilot |
 //! | path continuation, near the camera inside of a medium | the weight window |
 //! | path continuation, elsewhere | Russian roulette on the throughput |
 //!
 //! The estimate is unbiased whatever the numbers: splitting and roulette compensate by their
-//! factors, guided flights by their number in the balance heuristic.
+//! factors, all else by its expected number in the balance heuristic.
 
 use super::context::PathContext;
 use super::probes::{Brightness, DistancePdf};
@@ -48,11 +49,9 @@ pub(super) struct PathValue {
     pub(super) nested: u32,
 }
 
-/// The number of samples of each technique at one vertex.
+/// The number of paths that go on from one vertex.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Counts {
-    /// Light samples for next-event estimation.
-    pub(super) light_samples: u32,
     /// The path's value relative to `expected` and its brightness relative to one worth keeping,
     /// where the weight window decides.
     window: Option<[f32; 2]>,
@@ -80,7 +79,6 @@ impl Counts {
             [value, path.throughput.max_element() / ROULETTE_BELOW]
         });
         Self {
-            light_samples: 1,
             window,
             may_split: path.nested < MOST_NESTED,
             survives_roulette: is_known && path.scatters + 1 < WEIGHED_VERTICES,

@@ -17,7 +17,7 @@ use super::{
     vertex::Vertex,
 };
 use crate::{
-    light::{By, ChosenLight, Light, LightChoice, LightSample, Receiver, Visibility},
+    light::{By, ChosenLight, Light, LightChoice, LightGroup, LightSample, Receiver, Visibility},
     math::{PathRng, Ray, Rgb, Slot, mean},
     sampling::mis,
     surface::{self, Intersection, occluded},
@@ -33,19 +33,59 @@ const SHORT_OF_LIGHT: f32 = 1.0 - 1e-4;
 pub struct PrevVertex {
     /// Receiver that light samples at the vertex are drawn for.
     pub from: Receiver,
-    /// Choice among the lights for these samples.
-    pub choice: LightChoice,
+    /// Sampling of the fires from the vertex.
+    pub fires: LightSampling,
+    /// Sampling of all other lights from the vertex.
+    pub lamps: LightSampling,
     /// Density over solid angle of the direction that the path took, 1/sr.
     pub pdf_solid_angle: f32,
 }
 
+/// The two techniques that sample a group of lights from a vertex: light samples, and the ray that
+/// leaves along the path. Their expected counts are fixed before any direction is drawn, and are
+/// the ones that both MIS weights are made of.
+#[derive(Clone, Copy, Debug)]
+pub struct LightSampling {
+    /// Choice among the lights for light samples.
+    pub choice: LightChoice,
+    /// Expected number of light samples.
+    pub samples: f32,
+    /// Expected number of times that the light along the path's own ray is gathered.
+    pub rays: f32,
+    /// Rough share of these lights in the irradiance at the vertex.
+    pub share: f32,
+}
+
+impl LightSampling {
+    /// One light sample, and one ray.
+    pub fn one_of_each(choice: LightChoice) -> Self {
+        Self { choice, samples: 1.0, rays: 1.0, share: 1.0 }
+    }
+
+    /// MIS weight of a light sample over the expected number of them.
+    fn weight_of_sample(&self, pdf: f32, pdf_of_ray: f32) -> f32 {
+        mis::mixture([self.samples, self.rays], [pdf, pdf_of_ray])
+    }
+
+    /// MIS weight of light along the ray over the expected number of times that it is gathered.
+    fn weight_of_ray(&self, pdf_of_ray: f32, pdf: f32) -> f32 {
+        mis::mixture([self.rays, self.samples], [pdf_of_ray, pdf])
+    }
+}
+
 /// Choice among the lights that the strategy asks for, where no probe scores them.
 pub fn choice(strategy: &Strategy) -> LightChoice {
+    choice_among(strategy, if strategy.nee { LightGroup::All } else { LightGroup::Lamps })
+}
+
+/// Choice among a group of lights by the method that the strategy asks for, where no probe scores
+/// them.
+pub fn choice_among(strategy: &Strategy, among: LightGroup) -> LightChoice {
     let by = match strategy.advanced.light_selection {
         LightSelection::Hierarchy | LightSelection::Probes => By::Hierarchy,
         LightSelection::Uniform => By::Uniform,
     };
-    LightChoice { volumes: strategy.nee, by }
+    LightChoice { among, by }
 }
 
 /// A direction drawn at a receiver towards one of the lights.
@@ -115,6 +155,14 @@ impl<'a> LightDirection<'a> {
         match &self.at {
             LightTarget::Solid { light } => light.can_be_met,
             LightTarget::Volume { .. } => true,
+        }
+    }
+
+    /// Length of the shadow ray if no surface ends it.
+    fn length(&self) -> f32 {
+        match &self.at {
+            LightTarget::Solid { light } => light.distance,
+            LightTarget::Volume { .. } => f32::INFINITY,
         }
     }
 
@@ -195,19 +243,26 @@ pub struct NeeSample {
     pub point: Option<Vec3A>,
     /// Tentative collisions along the shadow ray.
     pub collisions: u32,
+    /// Direction and length of the shadow ray; `None` where none was followed.
+    pub shadow_ray: Option<(Vec3A, f32)>,
+    /// Density over solid angle of the sample, and of the path's own ray in the same direction,
+    /// 1/sr; 0 where that cannot find the light.
+    pub pdfs: [f32; 2],
 }
 
-/// Draws one light sample at `vertex`. `emission_estimator` gathers the emission of volumes.
+/// Draws one light sample at `vertex`, as one of those that `sampling` expects.
+/// `emission_estimator` gathers the emission of volumes.
 pub fn sample_lights(
     scene: &Scene,
     emission_estimator: &EmissionEstimator,
     vertex: &Vertex,
-    choice: &LightChoice,
+    sampling: &LightSampling,
     rng: &mut PathRng,
 ) -> NeeSample {
     let from = vertex.receiver();
     let pick = rng.at64(Slot::LightPick);
-    let Some(light_direction) = LightDirection::new(scene, &from, choice, pick, rng) else {
+    let drawn = LightDirection::new(scene, &from, &sampling.choice, pick, rng);
+    let Some(light_direction) = drawn else {
         return NeeSample::default();
     };
     let unseen = NeeSample { point: light_direction.point(), ..NeeSample::default() };
@@ -219,11 +274,17 @@ pub fn sample_lights(
     if light_pdf <= 0.0 {
         return unseen;
     }
-    let weight =
-        if light_direction.can_be_met() { mis::balance(light_pdf, vertex_pdf) } else { 1.0 };
+    let pdf_of_ray = if light_direction.can_be_met() { vertex_pdf } else { 0.0 };
+    let weight = sampling.weight_of_sample(light_pdf, pdf_of_ray);
     let (radiance, collisions) =
         light_direction.radiance_over_pdf(scene, emission_estimator, light_pdf, rng);
-    NeeSample { contribution: value * weight * radiance, collisions, ..unseen }
+    NeeSample {
+        contribution: value * weight * radiance,
+        collisions,
+        shadow_ray: Some((light_direction.direction, light_direction.length())),
+        pdfs: [light_pdf, pdf_of_ray],
+        ..unseen
+    }
 }
 
 /// A point of a light, drawn as a light sample at a receiver would be; `None` for the sun.
@@ -280,7 +341,7 @@ pub fn visibility(
     pick: f64,
     rng: &mut PathRng,
 ) -> Option<Visibility> {
-    let choice = LightChoice { volumes: scene.strategy.nee, by: By::Hierarchy };
+    let choice = LightChoice { by: By::Hierarchy, ..choice(&scene.strategy) };
     let light_direction = LightDirection::new(scene, from, &choice, pick, rng)?;
     let (light, probability) = light_direction.light;
     let distance =
@@ -340,16 +401,22 @@ fn pdf_of_volumes(scene: &Scene, ray: &Ray, from: &Receiver, choice: &LightChoic
     sum
 }
 
-/// MIS weight of the volume emission gathered along a scattered ray; 1 for camera rays (no previous
-/// vertex), where no other technique samples it.
-pub fn weight_of_emission(scene: &Scene, ray: &Ray, prev_vertex: Option<&PrevVertex>) -> f32 {
-    match prev_vertex {
-        Some(prev_vertex) if scene.strategy.nee => {
-            let PrevVertex { from, choice, pdf_solid_angle } = prev_vertex;
-            mis::balance(*pdf_solid_angle, pdf_of_volumes(scene, ray, from, choice))
-        }
-        _ => 1.0,
-    }
+/// Weight of the volume emission gathered along a ray from a vertex: the MIS weight over the
+/// expected number of emission walks; with the densities of the ray and of light samples in its
+/// direction. 1 for camera rays (no previous vertex), where no other technique samples it.
+pub fn weight_of_emission(
+    scene: &Scene,
+    ray: &Ray,
+    prev_vertex: Option<&PrevVertex>,
+) -> (f32, [f32; 2]) {
+    let Some(PrevVertex { from, fires, pdf_solid_angle, .. }) = prev_vertex else {
+        return (1.0, [1.0, 0.0]);
+    };
+    let pdf = match fires.samples > 0.0 {
+        true => pdf_of_volumes(scene, ray, from, &fires.choice),
+        false => 0.0,
+    };
+    (fires.weight_of_ray(*pdf_solid_angle, pdf), [*pdf_solid_angle, pdf])
 }
 
 /// Radiance that arrives at the start of `ray` from the surface it ends on or the environment
@@ -363,18 +430,16 @@ pub fn at_the_end(
 ) -> Rgb {
     let shared = |radiance: Rgb, light_pdf: &dyn Fn(&PrevVertex) -> f32| match prev_vertex {
         None => radiance,
-        Some(prev_vertex) => {
-            radiance * mis::balance(prev_vertex.pdf_solid_angle, light_pdf(prev_vertex))
-        }
+        Some(prev) => radiance * prev.lamps.weight_of_ray(prev.pdf_solid_angle, light_pdf(prev)),
     };
     match end {
         Some(end) if end.surface.emits() => shared(end.surface.emission, &|prev_vertex| {
-            let PrevVertex { from, choice, .. } = prev_vertex;
-            scene.lights.pdf_of_surface(end.index, from, choice, &end.hit)
+            let PrevVertex { from, lamps, .. } = prev_vertex;
+            scene.lights.pdf_of_surface(end.index, from, &lamps.choice, &end.hit)
         }),
         Some(_) => Rgb::ZERO,
         None => {
-            let from = prev_vertex.map(|prev_vertex| (&prev_vertex.from, &prev_vertex.choice));
+            let from = prev_vertex.map(|prev| (&prev.from, &prev.lamps.choice));
             let suns = scene.lights.suns_behind(from, ray.direction);
             suns.fold(scene.lights.environment, |sum, (sun, pdf)| {
                 sum + shared(sun.radiance(), &|_| pdf)

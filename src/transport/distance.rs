@@ -12,6 +12,7 @@ use glam::Vec3A;
 
 use super::{
     counts::Allocation,
+    learned_counts,
     probes::{Brightness, DistancePdf},
     strategy::{Strategy, Tracker},
     tracking::{
@@ -154,9 +155,7 @@ impl<'g> GuidedDistances<'g> {
         let distance_pdf = guide.distance_pdf.as_ref();
         let allocation = Allocation::new(strategy, distance_pdf, film, flights_scale);
         let mean = allocation.mean_flights;
-        let whole = mean.floor();
-        let more = mean > whole && rng.uniform() < mean - whole;
-        let count = whole as u32 + u32::from(more);
+        let count = learned_counts::draw(mean, Slot::GuidedCount, rng);
         let offset = if count > 0 { rng.at(Slot::GuidedDistance) } else { 0.0 };
         Self { guide, allocation, count, offset }
     }

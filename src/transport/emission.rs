@@ -10,6 +10,7 @@ pub mod ray;
 mod stratified;
 
 use self::ray::{RayEmission, RayKind};
+pub(super) use self::stratified::transmittance;
 use super::march;
 use super::strategy::{Advanced, BoostMode, Strategy};
 use super::tracking::majorant::EmissionMajorant;

@@ -1,6 +1,6 @@
 //! A scene framed on a film, prepared in two stages: [`Frame::new`] places the probes and fits the
-//! optimal majorant; the pilot pass, before the second sample of a pixel, finds the number of
-//! guided flights that pays.
+//! optimal majorant; the pilot pass, before the second sample of a pixel, learns how many samples
+//! of each technique pay.
 
 use std::sync::Arc;
 
@@ -8,9 +8,10 @@ use glam::{UVec2, Vec2};
 
 use super::context::PathContext;
 use super::emission::EmissionEstimator;
+use super::learned_counts::LearnedCounts;
 use super::observer::{Nobody, Observer};
 use super::path;
-use super::prepare::{self, guided_flights};
+use super::prepare::{self, pilot};
 use super::probes::{Brightness, Probes};
 use super::sample::{PathSample, PixelSampler, Prepared, SampleNumber};
 use super::scene::Scene;
@@ -102,20 +103,19 @@ impl Frame {
         };
         let offset = Vec2::new(rng.at(Slot::PixelX), rng.at(Slot::PixelY));
         let ray = self.scene.camera.ray(self.size, pixel, offset);
-        let flights_scale = match number {
-            SampleNumber::First if self.has_pilot() => guided_flights::FIRST,
-            SampleNumber::First => 1.0,
-            SampleNumber::Later(_, prepared) => prepared.guided_flights.unwrap_or(1.0),
+        let counts = match number {
+            SampleNumber::Later(_, Prepared { counts: Some(counts) }) => *counts,
+            _ => pilot::first(&self.scene.strategy, self.guides()),
         };
-        path::trace(&self.scene, self.context(flights_scale), ray, &mut rng, observer)
+        path::trace(&self.scene, self.context(counts), ray, &mut rng, observer)
     }
 
-    fn context(&self, flights_scale: f32) -> PathContext<'_> {
+    fn context(&self, counts: LearnedCounts) -> PathContext<'_> {
         PathContext {
             emission_estimator: &self.emission_estimator,
             probes: self.probes.as_deref(),
             brightness: self.brightness,
-            flights_scale,
+            counts,
         }
     }
 
@@ -128,9 +128,19 @@ impl Frame {
         Ok(PreparedFrame { frame: self, prepared })
     }
 
-    /// Whether a pilot pass decides the number of guided flights.
-    fn has_pilot(&self) -> bool {
-        self.probes.is_some() && self.scene.strategy.learns_share()
+    /// The frame with the expected counts of first samples for all samples, no pilot pass run.
+    pub fn with_first_counts(self) -> PreparedFrame {
+        PreparedFrame { frame: self, prepared: Prepared::NOTHING }
+    }
+
+    /// The frame with the expected counts of every sample of a pixel but the first.
+    pub fn with_counts(self, counts: LearnedCounts) -> PreparedFrame {
+        PreparedFrame { frame: self, prepared: Prepared { counts: Some(counts) } }
+    }
+
+    /// Whether probes guide distances.
+    fn guides(&self) -> bool {
+        self.probes.is_some() && self.scene.strategy.guides()
     }
 }
 
@@ -140,13 +150,12 @@ impl PixelSampler for Frame {
     }
 
     fn prepare(&self, progress: Progress) -> Result<Prepared> {
-        if !self.has_pilot() {
+        if self.scene.strategy.marches() {
             return Ok(Prepared::NOTHING);
         }
-        let context = |flights_scale| self.context(flights_scale);
-        let flights_scale =
-            guided_flights::flights_scale(&self.scene, self.size, context, progress)?;
-        Ok(Prepared { guided_flights: Some(flights_scale) })
+        let context = |counts| self.context(counts);
+        let counts = pilot::learn(&self.scene, self.size, self.guides(), context, progress)?;
+        Ok(Prepared { counts: Some(counts) })
     }
 }
 
@@ -181,10 +190,15 @@ impl PreparedFrame {
         &self.frame
     }
 
+    /// Expected counts that the pilot pass learned; `None` where none was run.
+    pub fn counts(&self) -> Option<&LearnedCounts> {
+        self.prepared.counts()
+    }
+
     /// Guided flights of a camera ray, relative to those that the probes propose: the most
     /// efficient number for this picture, 0 for none.
     pub fn guided_flights(&self) -> f32 {
-        self.prepared.guided_flights.unwrap_or(1.0)
+        self.prepared.guided_flights().unwrap_or(1.0)
     }
 
     /// Sample `index` of a pixel, counted from 0.

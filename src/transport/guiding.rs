@@ -12,7 +12,7 @@ use super::probes::{CausticLobe, Probes, Surroundings};
 use super::scene::Scene;
 use super::strategy::Advanced;
 use super::vertex::{DirectionSample, Vertex};
-use crate::light::{LightChoice, Receiver};
+use crate::light::{LightChoice, LightGroup, Receiver};
 use crate::math::{PathRng, Ray};
 use crate::sampling::airlight::Airlight;
 use crate::sampling::equiangular::Equiangular;
@@ -29,14 +29,20 @@ const MOST_CAUSTICS: f32 = 0.5;
 /// Share of direct light, in light as a whole, from which on airlight gets all of its share.
 const STRAIGHT: f32 = 0.3;
 
-/// Choice among the lights at a vertex: by the scores of the probe around it, if there is one.
-pub(super) fn light_choice(scene: &Scene, context: &PathContext, vertex: &Vertex) -> LightChoice {
-    let choice = direct::choice(&scene.strategy);
+/// Choice among a group of the lights at a vertex: by the scores of the probe around it, if there
+/// is one.
+pub(super) fn light_choice(
+    scene: &Scene,
+    context: &PathContext,
+    vertex: &Vertex,
+    among: LightGroup,
+) -> LightChoice {
+    let choice = direct::choice_among(&scene.strategy, among);
     let from = vertex.receiver();
     match context.probes_for_lights().and_then(|probes| probes.light_scores(from.position)) {
-        Some(scores) => scene
-            .lights
-            .choice_by(scores, &from, choice.volumes, |direction| vertex.rough_value(direction)),
+        Some(scores) => {
+            scene.lights.choice_by(scores, &from, among, |direction| vertex.rough_value(direction))
+        }
         None => choice,
     }
 }
@@ -93,7 +99,7 @@ pub(super) fn direction(
     match context.probes_for_directions(strategy).filter(|_| scatters < GUIDED_RAYS) {
         Some(probes) => {
             // Without guided flights there are no splits to even out the weights of airlight.
-            let light_point = light_point.filter(|_| context.flights_scale > 0.0);
+            let light_point = light_point.filter(|_| context.counts.guided_flights > 0.0);
             vertex.sample_guided(&mixture(&strategy.advanced, probes, vertex, light_point), rng)
         }
         None => vertex.sample(rng),

@@ -10,6 +10,7 @@ pub mod effective;
 pub mod emission;
 mod frame;
 mod guiding;
+pub mod learned_counts;
 mod march;
 pub mod observer;
 pub mod path;

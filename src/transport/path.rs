@@ -7,12 +7,12 @@
 //! | term | settings without ratio tracking | with it, or marching |
 //! |---|---|---|
 //! | ∫ T ε dt | the scattering walk's own, up to its event | an emission walk over the whole ray |
-//! | T(d) L_end | when the scattering walk gets there | with the emission walk's T |
+//! | T(d) L_end | when the scattering walk gets there, or with an estimate of T | the same |
 //! | ∫ T μ_s L_s dt | the next vertex: light samples, then a direction | the same |
 //!
-//! With ratio tracking the scattering walk gathers neither of the first two, so that nothing counts
-//! twice. Every combination of toggles has the same mean. A marched ray stands for both walks,
-//! biased.
+//! With ratio tracking the scattering walk gathers no emission, and of the light at the end only the
+//! share that is not gathered by T, so that nothing counts twice. Every combination of toggles has
+//! the same mean. A marched ray stands for both walks, biased.
 //!
 //! A camera ray may have several guided flights, and a vertex may be left several times. Each
 //! branch but the last is followed to its end at once, then `State` is restored.
@@ -22,14 +22,18 @@
 //! (its modes) and `tracking::majorant` (clamped, literal), fires as lights in [`super::direct`],
 //! probe MIS in `distance` and [`super::probes`]; the number of samples of each in `counts`.
 
+mod current;
+mod gather;
+mod lights;
 mod state;
 
+use self::current::Path;
+use self::gather::LightAtEnd;
 use self::state::{Branch, State};
 use super::context::PathContext;
 use super::counts::{Counts, PathValue};
-use super::direct::{self, PrevVertex};
+use super::direct::PrevVertex;
 use super::distance::{self, DistanceGuide, GuidedDistances};
-use super::emission::ray::{RayEmission, RayKind};
 use super::guiding;
 use super::march;
 use super::observer::{Observer, PathStep};
@@ -37,7 +41,7 @@ use super::sample::{Contributions, PathSample};
 use super::scene::Scene;
 use super::tracking::event::{Event, Flight};
 use super::vertex::Vertex;
-use crate::math::{PathRng, Ray, Rgb};
+use crate::math::{PathRng, Ray, Rgb, mean};
 use crate::surface::{self, Intersection};
 use crate::volume::world::MediumRay;
 
@@ -60,19 +64,6 @@ pub fn trace(
     path.contributions.finish()
 }
 
-struct Path<'s> {
-    scene: &'s Scene,
-    context: PathContext<'s>,
-    state: State,
-    /// Expected contribution of one flight of the camera ray; 0 where it is unknown.
-    expected: f32,
-    /// Splits whose branches are being followed.
-    nested: u32,
-    /// Table of steps of the present ray, for ray marching.
-    table: march::MarchTable,
-    contributions: Contributions,
-}
-
 impl Path<'_> {
     /// Follows one ray: gathers its emission and what lies at its end, and scatters at the vertex
     /// on it. Returns false when the path is over.
@@ -83,22 +74,18 @@ impl Path<'_> {
         observer.step(PathStep::Ray { ray: &ray, t_max: d, throughput });
 
         let medium = scene.world.along(ray, d);
+        let at_end = self.light_at_end(end.as_ref());
         let marched = scene.strategy.marches().then(|| self.march(medium.clone(), rng));
-        let transmittance = scene
-            .strategy
-            .gathers_whole_rays()
-            .then(|| self.gather_whole_ray(medium.clone(), marched, end.as_ref(), rng, observer));
-        if transmittance.is_some() && self.is_last_ray() {
+        let transmittance = self.gather_whole_ray(medium.clone(), marched, &at_end, rng, observer);
+        if self.is_last_ray() && !self.flight_gathers(&at_end) {
             return false;
         }
         let flight = match marched {
             Some(_) => self.table.draw(medium, end_reflects(end.as_ref()), rng),
-            None => self.fly(medium, end.as_ref(), rng, observer),
+            None => self.fly(medium, (end.as_ref(), &at_end), rng, observer),
         };
         if flight.emission != Rgb::ZERO {
-            let w = direct::weight_of_emission(scene, &ray, self.state.prev_vertex.as_ref());
-            let State { scatters, throughput, .. } = self.state;
-            self.contributions.add_emission(scatters, throughput * (w * flight.emission), observer);
+            self.add_emission(flight.emission, flight.collisions, observer);
         }
         self.state.throughput *= flight.weight;
         if !self.state.throughput.is_finite() {
@@ -109,7 +96,7 @@ impl Path<'_> {
         if self.state.scatters == 0 {
             self.contributions.note_first_event(&flight, d, transmittance);
         }
-        match self.arrive(flight.event, end.as_ref(), observer) {
+        match self.arrive(flight.event, (end.as_ref(), &at_end), observer) {
             Some(vertex) => self.split_and_scatter(&vertex, rng, observer),
             None => false,
         }
@@ -119,7 +106,7 @@ impl Path<'_> {
     fn arrive(
         &mut self,
         event: Event,
-        end: Option<&Intersection>,
+        (end, at_end): (Option<&Intersection>, &LightAtEnd),
         observer: &mut impl Observer,
     ) -> Option<Vertex> {
         let ray = self.state.ray;
@@ -130,11 +117,10 @@ impl Path<'_> {
             }
             Event::Scattered { t, phase } => Some(Vertex::volume(ray.at(t), ray.direction, phase)),
             Event::Reached => {
-                if !self.scene.strategy.gathers_whole_rays() {
-                    let prev_vertex = self.state.prev_vertex.as_ref();
-                    let radiance = direct::at_the_end(self.scene, &ray, end, prev_vertex);
-                    let State { scatters, throughput, .. } = self.state;
-                    self.contributions.add_end(scatters, throughput * radiance, observer);
+                if at_end.arrives() {
+                    let share = 1.0 - at_end.by_transmittance;
+                    let contribution = self.state.throughput * (share * at_end.radiance);
+                    self.add_end(contribution, false, None, observer);
                 }
                 end.and_then(|end| Vertex::reflecting(end, &ray))
             }
@@ -188,15 +174,11 @@ impl Path<'_> {
             Branch::Other => rng.enter_vertex(u32::MAX),
         }
         observer.step(PathStep::Vertex { vertex, throughput: self.state.throughput });
-        let choice = guiding::light_choice(self.scene, &self.context, vertex);
-        for _ in 0..counts.light_samples {
-            let estimator = self.context.emission_estimator;
-            let sample = direct::sample_lights(self.scene, estimator, vertex, &choice, rng);
-            self.contributions.count(sample.collisions);
-            let State { scatters, throughput, .. } = self.state;
-            self.contributions.add_light(scatters, throughput * sample.contribution, observer);
-            self.state.light_point = sample.point;
-        }
+        let (fires, lamps) = self.light_sampling(vertex);
+        self.state.throughput_before = mean(self.state.throughput);
+        self.state.light_point = None;
+        self.sample_lights(vertex, &fires, rng, observer);
+        self.sample_lights(vertex, &lamps, rng, observer);
         if self.contributions.is_cut() {
             return false;
         }
@@ -210,7 +192,7 @@ impl Path<'_> {
         }
         self.state.ray = vertex.ray(drawn.direction);
         let (from, pdf_solid_angle) = (vertex.receiver(), drawn.pdf_solid_angle);
-        self.state.prev_vertex = Some(PrevVertex { from, choice, pdf_solid_angle });
+        self.state.prev_vertex = Some(PrevVertex { from, fires, lamps, pdf_solid_angle });
         self.survives(counts, rng)
     }
 
@@ -251,12 +233,12 @@ impl Path<'_> {
     fn fly(
         &mut self,
         medium: MediumRay,
-        end: Option<&Intersection>,
+        (end, at_end): (Option<&Intersection>, &LightAtEnd),
         rng: &mut PathRng,
         observer: &mut impl Observer,
     ) -> Flight {
         let (scene, State { ray, throughput, scatters, .. }) = (self.scene, self.state);
-        let needs_end = !scene.strategy.emission_ratio_tracking || end_reflects(end);
+        let needs_end = self.flight_gathers(at_end) || end_reflects(end);
         let is_first = scatters == 0;
         let guide = if is_first || !needs_end {
             let (context, light_point) = (&self.context, self.state.light_point);
@@ -287,7 +269,7 @@ impl Path<'_> {
         observer: &mut impl Observer,
     ) -> Flight {
         let (strategy, throughput) = (&self.scene.strategy, self.state.throughput);
-        let film = (&self.context.brightness, self.context.flights_scale);
+        let film = (&self.context.brightness, self.context.counts.guided_flights);
         let distances = GuidedDistances::new(strategy, guide, film, rng);
         self.expected = distances.expected();
         for (index, t) in distances.iter().enumerate() {
@@ -305,51 +287,6 @@ impl Path<'_> {
             rng.enter_vertex(0);
         }
         distances.unguided(medium, strategy, throughput, rng)
-    }
-
-    /// Marches along the present ray and fills its table of steps.
-    fn march(&mut self, medium: MediumRay, rng: &mut PathRng) -> RayEmission {
-        let voxels = self.scene.strategy.advanced.march_step;
-        let marched = self.table.fill(medium, voxels, self.state.throughput, rng);
-        self.contributions.count(marched.collisions);
-        marched
-    }
-
-    /// Gathers the emission of the whole ray, by the emission walk if it was not `marched`, and the
-    /// radiance at its end through the same transmittance T, which is returned.
-    fn gather_whole_ray(
-        &mut self,
-        medium: MediumRay,
-        marched: Option<RayEmission>,
-        end: Option<&Intersection>,
-        rng: &mut PathRng,
-        observer: &mut impl Observer,
-    ) -> Rgb {
-        let State { ray, prev_vertex, scatters, throughput, .. } = self.state;
-        let prev_vertex = prev_vertex.as_ref();
-        let radiance = direct::at_the_end(self.scene, &ray, end, prev_vertex);
-        let dark = radiance == Rgb::ZERO && !self.scene.world.emits();
-        if dark && prev_vertex.is_some() {
-            return Rgb::ZERO;
-        }
-        let is_seen = prev_vertex.is_none() && !dark;
-        let gathered = marched.unwrap_or_else(|| {
-            let ray_kind = if is_seen { RayKind::Camera } else { RayKind::Scattered };
-            let gathered = self.context.emission_estimator.gather(medium, ray_kind, rng);
-            self.contributions.count(gathered.collisions);
-            gathered
-        });
-        if gathered.emission != Rgb::ZERO {
-            let w = direct::weight_of_emission(self.scene, &ray, prev_vertex);
-            self.contributions.add_emission(
-                scatters,
-                throughput * (w * gathered.emission),
-                observer,
-            );
-        }
-        let radiance = gathered.transmittance * radiance;
-        self.contributions.add_end(scatters, throughput * radiance, observer);
-        gathered.transmittance
     }
 
     /// Whether the path has reached its limit of scattering events: its last ray still gathers

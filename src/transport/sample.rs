@@ -2,7 +2,7 @@
 
 use glam::UVec2;
 
-use super::observer::{Observer, PathStep};
+use super::learned_counts::LearnedCounts;
 use super::tracking::MOST_COLLISIONS;
 use super::tracking::event::{Event, Flight};
 use crate::error::{Progress, Result, report};
@@ -11,7 +11,7 @@ use crate::math::{Rgb, mean};
 /// The version of the paths, raised whenever (scene, strategy, seed, pixel, sample) leads to
 /// another path than before. Snapshots carry it: samples of two versions come from two estimators
 /// or two series of random numbers, so that only those of the same version are continued.
-pub const PATH_VERSION: u64 = 1;
+pub const PATH_VERSION: u64 = 2;
 
 /// Contribution of one path to its pixel: four parts that sum to the beauty, and auxiliary values.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -50,46 +50,23 @@ pub(super) struct Contributions {
 
 impl Contributions {
     /// Adds volume emission on a ray after so many scattering events and reflections.
-    pub(super) fn add_emission(
-        &mut self,
-        scatters: u32,
-        contribution: Rgb,
-        observer: &mut impl Observer,
-    ) {
+    pub(super) fn add_emission(&mut self, scatters: u32, contribution: Rgb) {
         match scatters {
             0 => self.sample.emission += contribution,
             _ => self.add_scattered(scatters, contribution),
         }
-        observer.step(PathStep::Emission { contribution });
     }
 
     /// Adds radiance of the surface or environment at the end of a ray.
-    pub(super) fn add_end(
-        &mut self,
-        scatters: u32,
-        contribution: Rgb,
-        observer: &mut impl Observer,
-    ) {
+    pub(super) fn add_end(&mut self, scatters: u32, contribution: Rgb) {
         match scatters {
             0 => self.sample.background += contribution,
             _ => self.add_scattered(scatters, contribution),
         }
-        observer.step(PathStep::End { contribution });
-    }
-
-    /// Adds the contribution of a light sample at vertex number `scatters`.
-    pub(super) fn add_light(
-        &mut self,
-        scatters: u32,
-        contribution: Rgb,
-        observer: &mut impl Observer,
-    ) {
-        self.add_scattered(scatters, contribution);
-        observer.step(PathStep::Light { contribution });
     }
 
     /// Adds light that comes by `scatters` events, at least one.
-    fn add_scattered(&mut self, scatters: u32, contribution: Rgb) {
+    pub(super) fn add_scattered(&mut self, scatters: u32, contribution: Rgb) {
         match scatters {
             1 => self.sample.direct += contribution,
             _ => self.sample.indirect += contribution,
@@ -141,17 +118,22 @@ impl Contributions {
 /// [`PixelSampler::prepare`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Prepared {
-    pub(super) guided_flights: Option<f32>,
+    pub(super) counts: Option<LearnedCounts>,
 }
 
 impl Prepared {
     /// Result for samplers without a pilot pass.
-    pub const NOTHING: Self = Self { guided_flights: None };
+    pub const NOTHING: Self = Self { counts: None };
 
     /// Guided flights of a camera ray, relative to those that the probes propose; 0 where none pay.
-    /// `None` where no pilot pass decides it.
+    /// `None` where no pilot pass was run.
     pub fn guided_flights(&self) -> Option<f32> {
-        self.guided_flights
+        self.counts.map(|counts| counts.guided_flights)
+    }
+
+    /// Expected counts that the pilot pass learned; `None` where none was run.
+    pub fn counts(&self) -> Option<&LearnedCounts> {
+        self.counts.as_ref()
     }
 }
 

@@ -7,8 +7,8 @@ use std::ops::ControlFlow;
 
 use super::{
     strategy::TransmittanceEstimator,
-    tracking::{Collision, MOST_COLLISIONS, Walk, exp_neg, null_coefficient, roulette, track},
-    transmittance::Transmittance,
+    tracking::{Collision, Walk, exp_neg, null_coefficient, roulette, track},
+    transmittance,
 };
 use crate::{
     math::{PathRng, Rgb, Slot},
@@ -17,6 +17,8 @@ use crate::{
 
 /// Places where a comb reads μ_t, for each unit of the majorants' optical distance.
 const READS: f32 = 1.0;
+/// Slots of the jitters of the first two combs.
+const JITTERS: [Slot; 2] = [Slot::LightTransmittanceA, Slot::LightTransmittanceB];
 /// The control coefficient of residual ratio tracking: its place between the bounds of μ_t in a
 /// segment. The lower bound errs nowhere by more than ratio tracking does, (μ − a)²/(M − a) ≤ μ²/M;
 /// halfway would err by as much in the empty part of a cell as in the dense one.
@@ -29,7 +31,7 @@ pub fn transmittance(
     rng: &mut PathRng,
 ) -> (Rgb, u32) {
     match estimator {
-        TransmittanceEstimator::Marching => marching(medium, rng),
+        TransmittanceEstimator::Marching => transmittance::whole(medium, READS, JITTERS, rng),
         TransmittanceEstimator::Residual => residual(medium, rng),
         TransmittanceEstimator::Ratio => ratio(medium, rng),
     }
@@ -97,27 +99,6 @@ fn residual(medium: MediumRay, rng: &mut PathRng) -> (Rgb, u32) {
     let mut walk = Residual { weight: Rgb::ONE, control: Rgb::ZERO };
     let collisions = track(medium, rng.exponential(), rng, &mut walk);
     (walk.weight, collisions)
-}
-
-/// Unbiased ray marching (Kettunen et al. 2021): see [`super::transmittance`].
-fn marching(mut medium: MediumRay, rng: &mut PathRng) -> (Rgb, u32) {
-    let Some(mut segment) = medium.next_segment() else { return (Rgb::ONE, 0) };
-    let jitters = [Slot::LightTransmittanceA, Slot::LightTransmittanceB].map(|slot| rng.at(slot));
-    let mut t_hat = Transmittance::new(READS, jitters, rng);
-    loop {
-        let crossed = if segment.uniform {
-            t_hat.cross_uniform(medium.coefficients(segment.t0).mu_t, &segment, rng)
-        } else {
-            t_hat.advance(&medium, segment.majorant, segment.t0, segment.t1, rng)
-        };
-        if crossed.is_break() {
-            break;
-        }
-        let Some(next) = medium.next_segment() else { break };
-        segment = next;
-    }
-    // A walk that is cut may have read a few places more.
-    (t_hat.estimate(), t_hat.reads.min(MOST_COLLISIONS))
 }
 
 /// Transmittance of a uniform segment, per channel.

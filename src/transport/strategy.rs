@@ -85,6 +85,12 @@ pub struct Advanced {
     /// spread samples; `residual` is residual ratio tracking against the local minimum; `ratio` is
     /// ratio tracking. All three are unbiased.
     pub transmittance: TransmittanceEstimator,
+    /// How light at the end of a ray - the environment, lamps in view - is collected. `arrival`
+    /// waits for a path to get there; `transmittance` collects it along every ray, through the
+    /// transmittance of all smoke on the way; `learned` finds out in a pilot pass which of the two
+    /// has less noise for its time, for camera rays and for later ones. Where fire is rendered
+    /// without ratio tracking, `learned` is `arrival`.
+    pub ray_end: RayEnd,
     /// How null-collision sampling draws distances. `delta` is delta tracking: it reads the density
     /// at each step; `decomposition` is decomposition tracking: it skips reads below the local
     /// minimum, but needs ratio tracking for emission and excludes the probes; `spectral` is
@@ -207,6 +213,19 @@ pub enum TransmittanceEstimator {
     Ratio,
 }
 
+/// How light at the end of a ray is collected.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum RayEnd {
+    /// In the way that has less noise for its time, as a pilot pass finds out.
+    #[default]
+    Learned,
+    /// Where a path gets there.
+    Arrival,
+    /// Along every ray, through the transmittance of what is in front of it.
+    Transmittance,
+}
+
 /// How null-collision sampling draws distances.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -247,7 +266,8 @@ impl Strategy {
         Self { integrator: self.integrator, advanced: self.advanced, ..preset.strategy() }
     }
 
-    /// Whether a ray's emission and its end are gathered all along it, wherever it scatters.
+    /// Whether the emission is gathered all along a ray, wherever it scatters, and with it the
+    /// transmittance of the ray.
     pub fn gathers_whole_rays(&self) -> bool {
         self.emission_ratio_tracking || self.marches()
     }
@@ -321,6 +341,7 @@ impl Default for Advanced {
             march_step: 1.0,
             scatter_probability: ScatterProbability::default(),
             transmittance: TransmittanceEstimator::default(),
+            ray_end: RayEnd::default(),
             tracker: Tracker::default(),
             probe_count: 4096,
             probe_learning: true,

@@ -18,7 +18,7 @@ use smallvec::SmallVec;
 
 use super::tracking::{MOST_COLLISIONS, exp_neg, roulette};
 use crate::{
-    math::{PathRng, Rgb},
+    math::{PathRng, Rgb, Slot},
     volume::{medium::Segment, world::MediumRay},
 };
 
@@ -206,6 +206,33 @@ impl Transmittance {
         }
         sum / self.combs.len() as f32
     }
+}
+
+/// Transmittance along the whole medium by unbiased ray marching, with `reads` places of a comb for
+/// each unit of the majorants' optical distance; also returns the number of reads.
+pub(super) fn whole(
+    mut medium: MediumRay,
+    reads: f32,
+    jitters: [Slot; 2],
+    rng: &mut PathRng,
+) -> (Rgb, u32) {
+    let Some(mut segment) = medium.next_segment() else { return (Rgb::ONE, 0) };
+    let jitters = jitters.map(|slot| rng.at(slot));
+    let mut t_hat = Transmittance::new(reads, jitters, rng);
+    loop {
+        let crossed = if segment.uniform {
+            t_hat.cross_uniform(medium.coefficients(segment.t0).mu_t, &segment, rng)
+        } else {
+            t_hat.advance(&medium, segment.majorant, segment.t0, segment.t1, rng)
+        };
+        if crossed.is_break() {
+            break;
+        }
+        let Some(next) = medium.next_segment() else { break };
+        segment = next;
+    }
+    // A walk that is cut may have read a few places more.
+    (t_hat.estimate(), t_hat.reads.min(MOST_COLLISIONS))
 }
 
 /// exp per channel, at the cost of one where all are the same.

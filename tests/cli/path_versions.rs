@@ -10,23 +10,24 @@ use super::Place;
 /// `--preset full --spp 2` and `--spp 4`.
 const FIXTURES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/snapshots");
 
-/// Holds while the paths are those of 0.1.0; once [`PATH_VERSION`] is raised the same snapshot is
-/// refused.
+/// Its paths are of version 1, which these are not.
 #[test]
-fn a_snapshot_of_0_1_0_goes_on_to_the_same_bits() {
+fn a_snapshot_of_0_1_0_opens_and_is_not_gone_on_from() {
     let place = Place::new();
     for name in ["0.1.0_2spp.exr", "0.1.0_4spp.exr", "scene.toml"] {
         std::fs::copy(format!("{FIXTURES}/{name}"), place.path(name)).unwrap();
     }
     let info = place.succeed(&["info", "0.1.0_2spp.exr"]);
     assert!(info.contains("path version  1\n"), "{info}");
-    let full = ["scene.toml", "--preset", "full"];
-    let more = ["--spp", "4", "--resume", "0.1.0_2spp.exr", "-o", "more.exr"];
-    place.succeed(&[&["render"], &full[..], &more[..]].concat());
     let read = |name: &str| read_snapshot(&place.path(name)).unwrap();
-    let (old, new) = (read("0.1.0_4spp.exr"), read("more.exr"));
-    assert_eq!((old.header.path_version, new.header.path_version), (1, PATH_VERSION));
-    assert_eq!(old.film, new.film);
+    let (two, four) = (read("0.1.0_2spp.exr"), read("0.1.0_4spp.exr"));
+    assert_eq!((two.header.path_version, four.header.path_version), (1, 1));
+    assert_eq!(four.film.totals.paths, 2 * two.film.totals.paths);
+    let more = ["--spp", "4", "--resume", "0.1.0_2spp.exr", "-o", "more.exr"];
+    let full = ["render", "scene.toml", "--preset", "full"];
+    let (code, _, stderr) = place.run(&[&full[..], &more[..]].concat());
+    assert_eq!(code, 1, "{stderr}");
+    assert!(stderr.contains("the snapshot has path version 1, of Flambeau 0.1.0"), "{stderr}");
 }
 
 #[test]

@@ -28,8 +28,10 @@ const ROOMS: Order = Order {
 const TRANSPORT: Order = Order {
     folder: "src/transport",
     layers: &[
-        &["camera", "strategy", "vertex", "weight_window"],
-        &["observer", "scene", "toggle", "tracking"],
+        &["camera", "learned_counts", "strategy", "vertex", "weight_window"],
+        &["observer", "toggle", "tracking"],
+        &["effective"],
+        &["scene"],
         &["sample"],
         &["emission/ray", "transmittance"],
         &["march", "shadow"],

@@ -78,7 +78,7 @@ pub fn build(text: &str) -> Scene {
 
 /// A built scene under another strategy.
 pub fn with_strategy(scene: &Scene, strategy: Strategy) -> Scene {
-    Scene { strategy, ..scene.clone() }
+    scene.clone().with_strategy(strategy)
 }
 
 /// The finer keys at their defaults, but for the probes, which are asked whether that pays or not.
@@ -300,7 +300,9 @@ pub fn probes_of(scene: &Scene) -> Option<Probes> {
 /// Probes by the scene they were placed in.
 type Placed = Vec<(Scene, Option<Arc<Probes>>)>;
 
-/// A scene on a square film. Strategies that ask for the same probes of one scene share them, as in
+/// A scene on a square film, its pilot pass run if the strategy learns how often probes guide; all
+/// other counts are those of first samples without it, as what they are changes no picture (see
+/// `counts`). Strategies that ask for the same probes of one scene share them, as in
 /// the window: to place them anew for each of a hundred settings takes longer than the paths.
 pub fn framed(scene: &Scene, side: u32) -> PreparedFrame {
     framed_by_seed(scene, side, 0)
@@ -314,7 +316,7 @@ pub fn framed_by_seed(scene: &Scene, side: u32, number: u64) -> PreparedFrame {
         let same_build = std::iter::zip(one, two).all(|(a, b)| Arc::ptr_eq(a.volume(), b.volume()));
         same_build
             && one.len() == two.len()
-            && Probes::recipe(&scene.strategy) == Probes::recipe(&other.strategy)
+            && Probes::recipe(scene.strategy()) == Probes::recipe(other.strategy())
     };
     let known = PLACED.lock().unwrap().iter().find(same).map(|(_, probes)| probes.clone());
     let probes = known.unwrap_or_else(|| {
@@ -323,7 +325,11 @@ pub fn framed_by_seed(scene: &Scene, side: u32, number: u64) -> PreparedFrame {
         probes
     });
     let seed = seed().wrapping_add(number);
-    prepared(Frame::with_probes(Arc::new(scene.clone()), UVec2::splat(side), seed, probes))
+    let frame = Frame::with_probes(Arc::new(scene.clone()), UVec2::splat(side), seed, probes);
+    match scene.strategy().learns_share() {
+        true => prepared(frame),
+        false => frame.with_first_counts(),
+    }
 }
 
 /// Side of the film that single-value scenes are rendered on.

@@ -11,7 +11,7 @@ use flambeau::{
     sampling::{mis, warp::about_axis},
     transport::{
         PathSample, Scene,
-        direct::{self, PrevVertex},
+        direct::{self, LightSampling, PrevVertex},
         emission::{EmissionEstimator, ray::RayKind},
         strategy::{Preset, Strategy},
         vertex::Vertex,
@@ -157,7 +157,7 @@ fn second_moments(scene: &Scene, depth: f32) -> [f64; 3] {
     let vertex = vertex_below(depth);
     let [instance] = scene.world.instances() else { panic!("one volume") };
     let solid_angle = 2.0 * TAU / f64::from(STEPS * STEPS);
-    let emission_estimator = EmissionEstimator::new(&scene.strategy, 0.0);
+    let emission_estimator = EmissionEstimator::new(scene.strategy(), 0.0);
     (0..STEPS * STEPS)
         .into_par_iter()
         .map(|i| {
@@ -171,7 +171,7 @@ fn second_moments(scene: &Scene, depth: f32) -> [f64; 3] {
             let medium = scene.world.along(ray, f32::INFINITY);
             let radiance = emission_estimator.gather(medium, RayKind::Light, &mut rng).emission.x;
             let found = f64::from(value.x * radiance);
-            let weight = f64::from(mis::balance(light_pdf, phase_pdf));
+            let weight = f64::from(mis::mixture([1.0, 1.0], [light_pdf, phase_pdf]));
             let unweighted = found * found / f64::from(light_pdf);
             let weighted = unweighted * weight * weight;
             [unweighted * solid_angle, weighted * solid_angle, weighted / f64::from(phase_pdf)]
@@ -211,8 +211,9 @@ fn mis_bounds_the_variance_near_the_border() {
 #[test]
 fn no_look_from_inside_exceeds_the_brightest_ray() {
     let slab = glowing_slab();
-    let emission_estimator = EmissionEstimator::new(&slab.strategy, 0.0);
-    let choice = direct::choice(&slab.strategy);
+    let emission_estimator = EmissionEstimator::new(slab.strategy(), 0.0);
+    let choice = direct::choice(slab.strategy());
+    let sampling = LightSampling::one_of_each(choice);
     let brightest = 0.5_f32;
     let mut sums = [0.0; 2];
     const LOOKS: u32 = 20_000;
@@ -221,14 +222,15 @@ fn no_look_from_inside_exceeds_the_brightest_ray() {
         for i in 0..LOOKS {
             let mut rng = PathRng::new(seed(), UVec2::ZERO, i);
             let light =
-                direct::sample_lights(&slab, &emission_estimator, &vertex, &choice, &mut rng)
+                direct::sample_lights(&slab, &emission_estimator, &vertex, &sampling, &mut rng)
                     .contribution;
             assert!(light.max_element() <= brightest * 1.0001, "{depth}: a look brings {light}");
             let turn = vertex.sample(&mut rng).unwrap();
             let ray: Ray = vertex.ray(turn.direction);
             let (from, pdf_solid_angle) = (vertex.receiver(), turn.pdf_solid_angle);
-            let prev_vertex = PrevVertex { from, choice, pdf_solid_angle };
-            let weight = direct::weight_of_emission(&slab, &ray, Some(&prev_vertex));
+            let prev_vertex =
+                PrevVertex { from, fires: sampling, lamps: sampling, pdf_solid_angle };
+            let (weight, _) = direct::weight_of_emission(&slab, &ray, Some(&prev_vertex));
             assert!((0.0..=1.0).contains(&weight));
             sums[0] += f64::from(light.x);
             sums[1] += f64::from(1.0 - weight);

@@ -3,7 +3,7 @@
 
 use crate::common::{self, Expected, Verdicts, build, full_name, measure_to, with_strategy};
 use flambeau::{
-    light::{By, LightChoice, Receiver},
+    light::{By, LightChoice, LightGroup, Receiver},
     math::{PathRng, Rgb},
     transport::{
         PathSample, Scene, direct,
@@ -109,7 +109,10 @@ fn choices(scene: &Scene, probes: &Probes, count: u32) -> Vec<(Receiver, LightCh
             let to = Receiver { position, normal };
             let scores = probes.light_scores(position)?;
             let value = |direction: Vec3A| 1.1 + direction.x;
-            Some((to, scene.lights.choice_by(scores, &to, scene.strategy.nee, value)))
+            Some((
+                to,
+                scene.lights.choice_by(scores, &to, direct::choice(scene.strategy()).among, value),
+            ))
         })
         .collect()
 }
@@ -121,7 +124,7 @@ fn lights_are_chosen_as_often_as_is_said() {
     const PICKS: u32 = 20_000;
     for nee in [true, false] {
         let (scene, probes) = scored(&walls(), Strategy { nee, ..by(LightSelection::Probes) });
-        let count = scene.lights.len(nee);
+        let count = scene.lights.len(direct::choice(scene.strategy()).among);
         assert_eq!(count, if nee { 22 } else { 10 });
         let choices = choices(&scene, &probes, 60);
         assert!(choices.len() > 40, "{}", choices.len());
@@ -157,10 +160,10 @@ fn lights_are_chosen_as_often_as_is_said() {
 #[test]
 fn no_light_is_lost() {
     let (scene, probes) = scored(&walls(), by(LightSelection::Probes));
-    let hierarchy = direct::choice(&scene.strategy);
+    let hierarchy = direct::choice(scene.strategy());
     let mut compared = 0;
     for (to, choice) in choices(&scene, &probes, 200) {
-        for light in 0..scene.lights.len(true) as u32 {
+        for light in 0..scene.lights.len(LightGroup::All) as u32 {
             let [there, here] =
                 [hierarchy, choice].map(|c| scene.lights.probability(light, &to, &c));
             assert!(here >= 0.29 * there, "{light}: {here} of {there}");
@@ -174,13 +177,13 @@ fn no_light_is_lost() {
 #[test]
 fn hidden_lights_are_rarely_chosen() {
     let (scene, probes) = scored(&walls(), by(LightSelection::Probes));
-    let hierarchy = direct::choice(&scene.strategy);
+    let hierarchy = direct::choice(scene.strategy());
     let instances = scene.world.instances();
     let mut shares = [0.0; 2];
     for y in [-0.9, -0.6, -0.1, 0.4, 0.8] {
         let to = Receiver { position: Vec3A::new(0.6, y, -0.2), normal: None };
         let scores = probes.light_scores(to.position).unwrap();
-        let choice = scene.lights.choice_by(scores, &to, true, |_| 1.0);
+        let choice = scene.lights.choice_by(scores, &to, LightGroup::All, |_| 1.0);
         for &fire in scene.world.emissive() {
             let x = instances[fire as usize].emission_bounds().center().x;
             let hidden = !(0.0..1.0).contains(&x);

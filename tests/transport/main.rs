@@ -5,6 +5,7 @@ mod agree;
 mod caustics;
 mod closed_forms;
 mod common;
+mod counts;
 mod extremes;
 mod fire_light;
 mod furnaces;

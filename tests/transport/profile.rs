@@ -20,8 +20,8 @@ fn along_y() -> Ray {
 
 /// With the probes, whether they pay or not.
 fn frame(scene: &Scene) -> PreparedFrame {
-    let advanced = Advanced { share_learning: false, ..scene.strategy.advanced };
-    let strategy = Strategy { advanced, ..scene.strategy };
+    let advanced = Advanced { share_learning: false, ..scene.strategy().advanced };
+    let strategy = Strategy { advanced, ..*scene.strategy() };
     crate::common::frame_of(Arc::new(with_strategy(scene, strategy)), SIZE, 0)
 }
 

@@ -75,7 +75,7 @@ fn reflectance_and_transmittance() {
             for preset in [Preset::Baseline, Preset::Full] {
                 let scene = with_strategy(&scene, preset.strategy());
                 let label = format!("{what} of g {g}, albedo {albedo}, depth {depth}, {preset}");
-                let most = 2 * paths_for(expected, &scene.strategy);
+                let most = 2 * paths_for(expected, scene.strategy());
                 verdicts.hold(&label, &scene, most, &Expected::known(&[expected]));
             }
         }
@@ -160,7 +160,7 @@ fn half_spaces() {
         for preset in [Preset::Baseline, Preset::Full] {
             let scene = with_strategy(&scene, preset.strategy());
             let label = format!("half space of albedo {albedo}, {preset}");
-            let most = 8 * paths_for(expected, &scene.strategy);
+            let most = 8 * paths_for(expected, scene.strategy());
             verdicts.hold(&label, &scene, most, &Expected::known(&[expected]));
         }
     }

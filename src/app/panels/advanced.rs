@@ -149,6 +149,10 @@ fn walks(ui: &mut Ui, strategy: &mut Strategy, edit: &mut Option<&'static str>) 
     if choice(ui, "Shadow rays", "strategy.advanced.transmittance", estimator) {
         *edit = Some("shadow rays");
     }
+    let ray_end = &mut strategy.advanced.ray_end;
+    if choice(ui, "Light at ray ends", "strategy.advanced.ray_end", ray_end) {
+        *edit = Some("light at ray ends");
+    }
     let reason = strategy.refusal_of(Tracker::Decomposition);
     let refused = reason.map(|_| Tracker::Decomposition);
     let tracker = &mut strategy.advanced.tracker;

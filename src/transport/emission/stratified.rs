@@ -10,7 +10,7 @@ use std::ops::ControlFlow;
 use super::ray::{RayEmission, RayKind, attenuated};
 use crate::transport::tracking::MOST_COLLISIONS;
 use crate::transport::tracking::majorant::EMISSION_FLOOR;
-use crate::transport::transmittance::{Comb, Transmittance};
+use crate::transport::transmittance::{self, Comb, Transmittance};
 use crate::{
     math::{PathRng, Rgb, Slot},
     volume::{medium::Segment, world::MediumRay},
@@ -49,6 +49,17 @@ impl StratifiedSampling {
         };
         Self { emission_reads: emission_reads.max(EMISSION_FLOOR), reads, jitter, comb_jitters }
     }
+}
+
+/// Estimates the transmittance along the medium as [`gather`] does, where no emission is gathered;
+/// also returns the number of reads.
+pub(in crate::transport) fn transmittance(
+    medium: MediumRay,
+    ray_kind: RayKind,
+    rng: &mut PathRng,
+) -> (Rgb, u32) {
+    let StratifiedSampling { reads, comb_jitters, .. } = StratifiedSampling::new(0.0, ray_kind);
+    transmittance::whole(medium, reads, comb_jitters, rng)
 }
 
 /// Gathers the emission along the medium, with `boost` reads along the brightest chord of a camera

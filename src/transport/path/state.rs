@@ -4,6 +4,7 @@ use glam::Vec3A;
 
 use crate::math::{Ray, Rgb};
 use crate::transport::direct::PrevVertex;
+use crate::transport::learned_counts::BounceClass;
 
 /// The part of a path that a branch saves and restores.
 #[derive(Clone, Copy, Debug)]
@@ -16,6 +17,9 @@ pub(super) struct State {
     pub(super) guiding_ratio: f32,
     /// Scattering events and reflections so far.
     pub(super) scatters: u32,
+    /// Mean throughput with which the path came to the vertex that the ray left, as light samples
+    /// there had it.
+    pub(super) throughput_before: f32,
     /// The vertex that the ray left, for MIS; `None` for the camera ray.
     pub(super) prev_vertex: Option<PrevVertex>,
     /// Sampled point of a light that the ray is guided by.
@@ -36,6 +40,12 @@ pub(super) enum Branch {
 }
 
 impl State {
+    /// Class of the vertex that the ray left.
+    pub(super) fn class(&self) -> BounceClass {
+        let is_surface = self.prev_vertex.is_some_and(|prev| prev.from.normal.is_some());
+        BounceClass::new(self.scatters, is_surface)
+    }
+
     /// The state of a camera ray.
     pub(super) fn new(ray: Ray) -> Self {
         Self {
@@ -43,6 +53,7 @@ impl State {
             throughput: Rgb::ONE,
             guiding_ratio: 1.0,
             scatters: 0,
+            throughput_before: 1.0,
             prev_vertex: None,
             light_point: None,
             branch: Branch::Main,

@@ -11,12 +11,14 @@ use std::f32::consts::{PI, TAU};
 use glam::{UVec2, Vec3A};
 use rayon::prelude::*;
 
-use super::cost::Cost;
 use crate::transport::context::PathContext;
 use crate::transport::emission::EmissionEstimator;
+use crate::transport::learned_counts::LearnedCounts;
+use crate::transport::observer::{Observer, PathStep};
 use crate::transport::path;
 use crate::transport::probes::stages::{CAUSTICS_FOUND, SEED};
 use crate::transport::probes::{Brightness, Indirect, Probes};
+use crate::transport::sample::PathSample;
 use crate::transport::scene::Scene;
 use crate::transport::strategy::{Advanced, Preset, Strategy};
 use crate::{
@@ -27,6 +29,8 @@ use crate::{
 
 /// Most paths from each probe.
 const PATHS: u32 = 16;
+/// Cost of a ray or a vertex beside the tracking steps, in tracking steps.
+const RAY_COST: f64 = 11.0;
 /// Cost of a probe's paths, in tracking steps, after which no other sets out.
 const COST_BUDGET: f64 = 1536.0;
 /// Scattering events and reflections after which the paths end: later ones contribute little that
@@ -50,14 +54,14 @@ pub(super) fn indirect_light(
         ..Advanced::default()
     };
     let strategy = Strategy { advanced, ..Preset::Full.strategy() };
-    let scene = Scene { max_scatters, strategy, ..scene.clone() };
+    let scene = Scene { max_scatters, ..scene.clone() }.with_strategy(strategy);
     let emission_estimator = EmissionEstimator::coarse();
     let brightness = Brightness::default();
     let context = PathContext {
         emission_estimator: &emission_estimator,
         probes: Some(probes),
         brightness,
-        flights_scale: 1.0,
+        counts: LearnedCounts::first(1.0),
     };
     let learn = |(node, bounds): &(u32, Aabb)| {
         Ok((*node, around(&scene, context, (*node, bounds), progress)?))
@@ -83,11 +87,32 @@ fn around(
         let even = |k: usize| (begin[k] + paths as f32 * EVEN_STEPS[k]).fract();
         let direction = spherical(1.0 - 2.0 * even(0), TAU * even(1));
         let ray = Ray::new(bounds.min + u * bounds.size(), direction);
-        let mut cost = Cost::default();
+        let mut cost = RoughCost::default();
         let sample = path::trace(scene, context, ray, &mut rng, &mut cost);
         indirect.add(direction, 4.0 * PI * luminance(sample.direct + sample.indirect));
         paths += 1;
         spent += cost.of(&sample);
     }
     Ok(indirect.scaled(1.0 / paths.max(1) as f32))
+}
+
+/// Cost of a path by its rays, vertices and tracking steps, which is good enough to bound it.
+#[derive(Debug, Default)]
+struct RoughCost {
+    rays_and_vertices: u32,
+}
+
+impl RoughCost {
+    /// Cost of the path of `sample`, in tracking steps.
+    fn of(&self, sample: &PathSample) -> f64 {
+        f64::from(sample.tracking_steps) + RAY_COST * f64::from(self.rays_and_vertices)
+    }
+}
+
+impl Observer for RoughCost {
+    fn step(&mut self, step: PathStep) {
+        if matches!(step, PathStep::Ray { .. } | PathStep::Vertex { .. }) {
+            self.rays_and_vertices += 1;
+        }
+    }
 }

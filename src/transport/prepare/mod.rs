@@ -1,15 +1,17 @@
 //! Paths that are traced before the picture to prepare it: k of the optimal majorant, the indirect
-//! light of probes, the number of guided flights of the camera rays.
+//! light of probes, the number of samples of each technique.
 //!
 //! All of it is fixed by the scene, the strategy and the size of the film, never by the seed, the
 //! time or the number of threads, and costs are counted in steps, so that the same picture is
 //! always prepared in the same way.
 
 mod cost;
-pub(super) mod guided_flights;
 mod learning;
+mod light_counts;
 mod optimal_majorant;
+pub(super) mod pilot;
 mod pilot_pixel;
+mod trial;
 
 use glam::UVec2;
 

@@ -14,6 +14,7 @@ use crate::math::luminance;
 use crate::transport::context::PathContext;
 use crate::transport::emission::EmissionEstimator;
 use crate::transport::emission::ray::RayKind;
+use crate::transport::learned_counts::LearnedCounts;
 use crate::transport::observer::Nobody;
 use crate::transport::probes::Brightness;
 use crate::transport::scene::Scene;
@@ -154,7 +155,7 @@ fn unguided(emission_estimator: &EmissionEstimator) -> PathContext<'_> {
         emission_estimator,
         probes: None,
         brightness: Brightness::default(),
-        flights_scale: 0.0,
+        counts: LearnedCounts::first(0.0),
     }
 }
 

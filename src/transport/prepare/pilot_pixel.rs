@@ -15,6 +15,18 @@ use crate::{
 /// Fixed seed, which with the sample numbers used here no picture is likely to have.
 const SEED: u64 = 0x6f70_7469_6d61_6c21;
 
+/// Cost that one set of pilot paths is worth for each pixel of the film, in tracking steps of one of
+/// two paths at each pilot pixel: about as much as a quarter of a sample.
+const BUDGET_PER_PIXEL: f64 = 32.0;
+/// Least and most cost of a set of pilot paths.
+const BUDGET: [f64; 2] = [16_384.0, 524_288.0];
+
+/// Cost that one set of pilot paths may take for a film of `size`.
+pub(in crate::transport) fn budget(size: UVec2) -> f64 {
+    let pixels = f64::from(size.x) * f64::from(size.y);
+    (BUDGET_PER_PIXEL * pixels).clamp(BUDGET[0], BUDGET[1])
+}
+
 /// A pixel and two rays through it.
 pub(in crate::transport) struct PilotPixel<'s> {
     pub(in crate::transport) scene: &'s Scene,

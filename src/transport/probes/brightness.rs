@@ -9,7 +9,9 @@ use crate::{
     error::{Progress, Result, report},
     math::{PathRng, luminance},
     surface,
-    transport::{direct, emission::EmissionEstimator, scene::Scene, vertex::Vertex},
+    transport::{
+        direct, direct::LightSampling, emission::EmissionEstimator, scene::Scene, vertex::Vertex,
+    },
 };
 
 /// Side of the grid of camera rays along which the radiance is estimated.
@@ -60,9 +62,9 @@ fn light_along(probes: &Probes, scene: &Scene, size: UVec2, index: u32) -> [f32;
         return [scattered, 0.0];
     };
     let mut rng = PathRng::new(SEED, UVec2::new(index, 1), 0);
-    let (emission_estimator, choice) =
-        (EmissionEstimator::coarse(), direct::choice(&scene.strategy));
-    let sample = direct::sample_lights(scene, &emission_estimator, &vertex, &choice, &mut rng);
+    let emission_estimator = EmissionEstimator::coarse();
+    let sampling = LightSampling::one_of_each(direct::choice(&scene.strategy));
+    let sample = direct::sample_lights(scene, &emission_estimator, &vertex, &sampling, &mut rng);
     let reflected = luminance(sample.contribution)
         * distance_pdf.map_or(1.0, |distance_pdf| distance_pdf.transmittance());
     [scattered, if reflected.is_finite() { reflected } else { 0.0 }]

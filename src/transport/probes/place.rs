@@ -14,6 +14,7 @@ use super::stages::{PLACED, SEED};
 use crate::error::{Progress, Result, report};
 use crate::light::LightScores;
 use crate::math::{Aabb, PathRng};
+use crate::transport::direct;
 use crate::transport::emission::EmissionEstimator;
 use crate::transport::scene::Scene;
 use crate::transport::strategy::{Advanced, Distance, LightSelection, Strategy};
@@ -30,7 +31,7 @@ impl Probes {
     pub(in crate::transport) fn placed(scene: &Scene, progress: Progress) -> Result<Option<Self>> {
         let Some(recipe) = Self::recipe(&scene.strategy) else { return Ok(None) };
         let scores_lights = recipe.advanced.light_selection == LightSelection::Probes
-            && scene.lights.len(recipe.nee) > 1;
+            && scene.lights.len(direct::choice(&recipe).among) > 1;
         if !scene.strategy.guides() && !scores_lights {
             return Ok(None);
         }

@@ -12,7 +12,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use flambeau::{
     math::{ACCUMULATORS, Rgb},
-    transport::{PathSample, Scene, strategy::Strategy},
+    transport::{PathSample, Scene, learned_counts::LearnedCounts, strategy::Strategy},
 };
 
 use statrs::distribution::{ContinuousCDF, Normal};
@@ -121,8 +121,26 @@ impl Verdicts {
     ) {
         let frame = framed_by_seed(scene, SIDE, self.next_seed());
         let mut rows = Rows::default();
-        self.follow(label, &scene.strategy, most / (SIDE * SIDE), expected, |samples| {
+        self.follow(label, scene.strategy(), most / (SIDE * SIDE), expected, |samples| {
             rows.add(samples, |_| &frame, &of);
+            channels_of(&rows.estimate())
+        });
+    }
+
+    /// Holds the mean radiance of a scene whose paths have given expected counts.
+    pub fn hold_counts(
+        &mut self,
+        label: &str,
+        scene: &Scene,
+        counts: LearnedCounts,
+        most: u32,
+        expected: &Expected,
+    ) {
+        let frame = framed_by_seed(scene, SIDE, self.next_seed());
+        let frame = frame.frame().clone().with_counts(counts);
+        let mut rows = Rows::default();
+        self.follow(label, scene.strategy(), most / (SIDE * SIDE), expected, |samples| {
+            rows.add(samples, |_| &frame, PathSample::beauty);
             channels_of(&rows.estimate())
         });
     }
@@ -132,7 +150,7 @@ impl Verdicts {
         let seed = self.next_seed();
         let frames: Vec<_> = scenes.iter().map(|scene| framed_by_seed(scene, SIDE, seed)).collect();
         let mut rows = Rows::default();
-        self.follow(label, &scenes[0].strategy, most / (SIDE * SIDE), expected, |samples| {
+        self.follow(label, scenes[0].strategy(), most / (SIDE * SIDE), expected, |samples| {
             let turn = |s: u32| (s / ACCUMULATORS as u32) as usize % frames.len();
             rows.add(samples, |s| &frames[turn(s)], PathSample::beauty);
             channels_of(&rows.estimate())

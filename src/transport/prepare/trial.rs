@@ -1,0 +1,189 @@
+//! A trial of the pilot pass: some pixels of the picture, traced under one scale of guided flights
+//! and all choices of how the light at the end of rays is gathered, with the variance and the cost
+//! of each.
+//!
+//! A path takes the same turns however the light at the end of its rays is gathered. So the trial
+//! gathers half of it in each way, and one set of paths serves all choices: their comparison has
+//! the noise of the light at the ends alone.
+
+use glam::UVec2;
+
+use super::cost::Cost;
+use super::pilot_pixel::{PilotPixel, budget, half_square};
+use crate::error::{Progress, Result, report};
+use crate::math::{Rgb, mean};
+use crate::transport::context::PathContext;
+use crate::transport::learned_counts::{BounceClass, LearnedCounts};
+use crate::transport::observer::{Observer, PathStep};
+use crate::transport::sample::PathSample;
+use crate::transport::scene::Scene;
+
+/// Most pixels of a trial.
+const MOST_PIXELS: u32 = 1 << 14;
+/// Cost of reading the probes along a ray, in tracking steps. Measured as the rest is.
+const GUIDE_COST: f64 = 26.0;
+/// Share of the light at the end of rays that a trial gathers in each way.
+const HALF: f32 = 0.5;
+
+/// One way to gather the light at the end of rays for each class of vertices that rays leave: one
+/// bit for each class, set for gathering by transmittance.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct RayEnds(u32);
+
+impl RayEnds {
+    /// Number of choices.
+    pub(super) const COUNT: usize = 1 << BounceClass::COUNT;
+
+    /// All choices.
+    pub(super) fn all() -> impl Iterator<Item = Self> {
+        (0..Self::COUNT as u32).map(Self)
+    }
+
+    /// The choice that `counts` make.
+    pub(super) fn of(counts: &LearnedCounts) -> Self {
+        let bit = |class: BounceClass| u32::from(counts.at(class).by_transmittance > HALF);
+        Self(BounceClass::ALL.iter().map(|&class| bit(class) << class as u32).sum())
+    }
+
+    /// `counts` with this choice.
+    pub(super) fn applied(self, mut counts: LearnedCounts) -> LearnedCounts {
+        for class in BounceClass::ALL {
+            let share = if self.by_transmittance(class as usize) { 1.0 } else { 0.0 };
+            counts.at_mut(class).by_transmittance = share;
+        }
+        counts
+    }
+
+    fn by_transmittance(self, class: usize) -> bool {
+        self.0 >> class & 1 == 1
+    }
+}
+
+/// Variance and cost of a trial for each choice of [`RayEnds`].
+#[derive(Clone, Debug)]
+pub(super) struct Trial {
+    /// Mean over the pixels of the variance of all light but the emission that is seen directly.
+    pub(super) variance: [f64; RayEnds::COUNT],
+    /// Mean over the pixels of the variance of the emission that is seen directly.
+    pub(super) emission: f64,
+    /// Mean cost of a sample, in steps.
+    pub(super) cost: [f64; RayEnds::COUNT],
+}
+
+impl Trial {
+    /// Measures `counts` of the guided flights with every choice of ray ends.
+    pub(super) fn new<'s>(
+        scene: &Scene,
+        size: UVec2,
+        counts: LearnedCounts,
+        context: &(impl Fn(LearnedCounts) -> PathContext<'s> + Sync),
+        progress: Progress,
+    ) -> Result<Self> {
+        let guides = counts.guided_flights > 0.0;
+        let context = context(counts.with_all_by_transmittance(HALF));
+        let none = [0.0; RayEnds::COUNT];
+        let mut trial = Self { variance: none, emission: 0.0, cost: none };
+        let (budget, mut pixels, mut spent) = (budget(size), 0, 0.0);
+        while spent < budget && pixels < MOST_PIXELS {
+            report(progress, (spent / budget) as f32)?;
+            let pixel = PilotPixel::new(scene, size, pixels);
+            let guide_cost = if guides && pixel.meets_medium() { GUIDE_COST } else { 0.0 };
+            let paths = [0, 1].map(|number| {
+                let mut ends = EndObserver::new(scene);
+                let sample = pixel.path(context, 0, number, &mut ends);
+                spent += 0.5 * (ends.cost.of(&sample) + guide_cost);
+                (sample, ends)
+            });
+            trial.add(&paths, guide_cost);
+            pixels += 1;
+        }
+        Ok(trial.over(f64::from(pixels)))
+    }
+
+    /// Variance, without that of the emission that is seen directly, and cost of a choice.
+    pub(super) fn of(&self, ends: RayEnds) -> (f64, f64) {
+        (self.variance[ends.0 as usize], self.cost[ends.0 as usize])
+    }
+
+    fn add(&mut self, paths: &[(PathSample, EndObserver<'_>); 2], guide_cost: f64) {
+        self.emission += half_square(gray(paths[0].0.emission) - gray(paths[1].0.emission));
+        let both = paths.each_ref().map(|(sample, ends)| ends.otherwise(sample));
+        let costs = paths.each_ref().map(|(sample, ends)| ends.cost.of(sample) + guide_cost);
+        for choice in RayEnds::all() {
+            let index = choice.0 as usize;
+            let [a, b] = [0, 1].map(|i| both[i] + paths[i].1.light(choice));
+            self.variance[index] += half_square(a - b);
+            self.cost[index] +=
+                [0, 1].iter().map(|&i| 0.5 * (costs[i] - paths[i].1.saved(choice))).sum::<f64>();
+        }
+    }
+
+    fn over(mut self, pixels: f64) -> Self {
+        let sums = self.variance.iter_mut().chain(&mut self.cost).chain([&mut self.emission]);
+        sums.for_each(|sum| *sum /= pixels);
+        self
+    }
+}
+
+/// Sums of the light at the ends of a path's rays, by the class of the vertex that a ray left, each
+/// as it would be were all of it gathered in one way.
+#[derive(Debug)]
+struct EndObserver<'s> {
+    cost: Cost<'s>,
+    by_arrival: [f64; BounceClass::COUNT],
+    by_transmittance: [f64; BounceClass::COUNT],
+    /// Cost of walks for the transmittance alone.
+    walks: [f64; BounceClass::COUNT],
+}
+
+impl<'s> EndObserver<'s> {
+    fn new(scene: &'s Scene) -> Self {
+        let none = [0.0; BounceClass::COUNT];
+        let cost = Cost::new(scene);
+        Self { cost, by_arrival: none, by_transmittance: none, walks: none }
+    }
+
+    /// All light of the path but the emission that is seen directly and the light at the ends.
+    fn otherwise(&self, sample: &PathSample) -> f64 {
+        let ends = self.by_arrival.iter().chain(&self.by_transmittance).sum::<f64>();
+        gray(sample.beauty() - sample.emission) - f64::from(HALF) * ends
+    }
+
+    /// The light at the ends, gathered by a choice.
+    fn light(&self, choice: RayEnds) -> f64 {
+        let one = |class: usize| match choice.by_transmittance(class) {
+            true => self.by_transmittance[class],
+            false => self.by_arrival[class],
+        };
+        (0..BounceClass::COUNT).map(one).sum()
+    }
+
+    /// Cost of the walks that a choice needs not. A camera ray's is needed for coverage.
+    fn saved(&self, choice: RayEnds) -> f64 {
+        let classes = 1..BounceClass::COUNT;
+        classes
+            .filter(|&class| !choice.by_transmittance(class))
+            .map(|class| self.walks[class])
+            .sum()
+    }
+}
+
+impl Observer for EndObserver<'_> {
+    fn step(&mut self, step: PathStep) {
+        self.cost.step(step);
+        if let PathStep::End { contribution, class, by_transmittance, .. } = step {
+            let sums = match by_transmittance {
+                true => &mut self.by_transmittance,
+                false => &mut self.by_arrival,
+            };
+            sums[class as usize] += gray(contribution) / f64::from(HALF);
+            self.walks[class as usize] += self.cost.of_last_step();
+        }
+    }
+}
+
+/// The value whose variance is the noise of a picture, see
+/// [`estimate::gray`](crate::render::estimate::gray).
+pub(super) fn gray(light: Rgb) -> f64 {
+    f64::from(mean(light))
+}
