@@ -16,10 +16,18 @@ pub struct PathContext<'s> {
     /// Mean in-scattered radiance over the film, estimated from the probes.
     pub brightness: Brightness,
     /// Expected counts that the pilot pass learned.
-    pub counts: LearnedCounts,
+    pub counts: &'s LearnedCounts,
 }
 
 impl<'s> PathContext<'s> {
+    /// The same with other expected counts.
+    pub(super) fn with_counts<'c>(self, counts: &'c LearnedCounts) -> PathContext<'c>
+    where
+        's: 'c,
+    {
+        PathContext { counts, ..self }
+    }
+
     /// Probes that guide scattering distances, and the weight window with them; `None` where the
     /// strategy does not guide, or where the pilot pass found that guided flights gain nothing.
     pub(super) fn probes_for_distances(&self, strategy: &Strategy) -> Option<&'s Probes> {

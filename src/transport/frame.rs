@@ -27,6 +27,8 @@ pub struct Frame {
     pub(super) emission_estimator: EmissionEstimator,
     pub(super) probes: Option<Arc<Probes>>,
     pub(super) brightness: Brightness,
+    /// Counts of first samples.
+    first_counts: LearnedCounts,
 }
 
 impl Frame {
@@ -56,7 +58,8 @@ impl Frame {
             Brightness::new(probes, &scene, size, NO_PROGRESS).unwrap_or_default()
         };
         let brightness = probes.as_ref().map(brightness).unwrap_or_default();
-        Self { scene, size, seed, emission_estimator, probes, brightness }
+        let first_counts = first_counts(&scene, &probes);
+        Self { scene, size, seed, emission_estimator, probes, brightness, first_counts }
     }
 
     /// [`Frame::with_probes`], unless `progress` cancels it.
@@ -75,7 +78,8 @@ impl Frame {
             Some(probes) => Brightness::new(probes, &scene, size, progress)?,
             None => Brightness::default(),
         };
-        Ok(Self { scene, size, seed, emission_estimator, probes, brightness })
+        let first_counts = first_counts(&scene, &probes);
+        Ok(Self { scene, size, seed, emission_estimator, probes, brightness, first_counts })
     }
 
     /// A copy of the frame with another seed, which shares everything that was prepared.
@@ -104,13 +108,13 @@ impl Frame {
         let offset = Vec2::new(rng.at(Slot::PixelX), rng.at(Slot::PixelY));
         let ray = self.scene.camera.ray(self.size, pixel, offset);
         let counts = match number {
-            SampleNumber::Later(_, Prepared { counts: Some(counts) }) => *counts,
-            _ => pilot::first(&self.scene.strategy, self.guides()),
+            SampleNumber::Later(_, Prepared { counts: Some(counts) }) => counts,
+            _ => &self.first_counts,
         };
         path::trace(&self.scene, self.context(counts), ray, &mut rng, observer)
     }
 
-    fn context(&self, counts: LearnedCounts) -> PathContext<'_> {
+    fn context<'s>(&'s self, counts: &'s LearnedCounts) -> PathContext<'s> {
         PathContext {
             emission_estimator: &self.emission_estimator,
             probes: self.probes.as_deref(),
@@ -137,11 +141,10 @@ impl Frame {
     pub fn with_counts(self, counts: LearnedCounts) -> PreparedFrame {
         PreparedFrame { frame: self, prepared: Prepared { counts: Some(counts) } }
     }
+}
 
-    /// Whether probes guide distances.
-    fn guides(&self) -> bool {
-        self.probes.is_some() && self.scene.strategy.guides()
-    }
+fn first_counts(scene: &Scene, probes: &Option<Arc<Probes>>) -> LearnedCounts {
+    pilot::first(&scene.strategy, probes.is_some() && scene.strategy.guides())
 }
 
 impl PixelSampler for Frame {
@@ -153,8 +156,8 @@ impl PixelSampler for Frame {
         if self.scene.strategy.marches() {
             return Ok(Prepared::NOTHING);
         }
-        let context = |counts| self.context(counts);
-        let counts = pilot::learn(&self.scene, self.size, self.guides(), context, progress)?;
+        let context = self.context(&self.first_counts);
+        let counts = pilot::learn(&self.scene, self.size, context, progress)?;
         Ok(Prepared { counts: Some(counts) })
     }
 }

@@ -10,10 +10,12 @@ use crate::transport::observer::{Observer, PathStep};
 use crate::transport::sample::PathSample;
 use crate::transport::scene::Scene;
 
-/// Cost of a ray or a vertex beside its walks, in tracking steps. All costs were measured on the
+/// Cost of a ray beside its walks, in tracking steps. All costs were measured on the
 /// scenes of the noise benchmark, by the time that a path takes with more and less of each: good to
 /// a factor of 1.5.
-const RAY_COST: f64 = 11.0;
+const RAY_COST: f64 = 6.0;
+/// Cost of a vertex beside its light samples.
+const VERTEX_COST: f64 = 4.0;
 /// Cost of a segment of the medium that a walk crosses for the transmittance alone.
 const SEGMENT_COST: f64 = 1.0;
 /// Cost of a segment of the medium that an emission walk crosses.
@@ -99,7 +101,7 @@ impl Observer for Cost<'_> {
             }
             PathStep::Vertex { vertex, .. } => {
                 self.vertex = vertex.receiver().position;
-                self.add(RAY_COST, 0);
+                self.add(VERTEX_COST, 0);
             }
             PathStep::Emission { technique, .. } => {
                 let segments = self.segments_of_ray();

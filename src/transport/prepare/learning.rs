@@ -61,7 +61,7 @@ pub(super) fn indirect_light(
         emission_estimator: &emission_estimator,
         probes: Some(probes),
         brightness,
-        counts: LearnedCounts::first(1.0),
+        counts: &LearnedCounts::first(1.0),
     };
     let learn = |(node, bounds): &(u32, Aabb)| {
         Ok((*node, around(&scene, context, (*node, bounds), progress)?))

@@ -144,19 +144,18 @@ impl PilotPixel<'_> {
     /// Luminance of a path along ray `number`, and its steps.
     fn traced(&self, k: f32, number: u32) -> (f64, u32) {
         let emission_estimator = EmissionEstimator::optimal(k);
-        let sample =
-            self.path(unguided(&emission_estimator), number as usize, 7 + number, &mut Nobody);
+        let counts = LearnedCounts::first(0.0);
+        let context = unguided(&emission_estimator, &counts);
+        let sample = self.path(context, number as usize, 7 + number, &mut Nobody);
         (f64::from(luminance(sample.beauty())), sample.tracking_steps)
     }
 }
 
-fn unguided(emission_estimator: &EmissionEstimator) -> PathContext<'_> {
-    PathContext {
-        emission_estimator,
-        probes: None,
-        brightness: Brightness::default(),
-        counts: LearnedCounts::first(0.0),
-    }
+fn unguided<'s>(
+    emission_estimator: &'s EmissionEstimator,
+    counts: &'s LearnedCounts,
+) -> PathContext<'s> {
+    PathContext { emission_estimator, probes: None, brightness: Brightness::default(), counts }
 }
 
 #[cfg(test)]
@@ -208,7 +207,8 @@ mod tests {
     fn variance_times_cost(scene: &Scene, k: f32) -> f64 {
         const SAMPLES: u32 = 64;
         let emission_estimator = EmissionEstimator::optimal(k);
-        let context = unguided(&emission_estimator);
+        let counts = LearnedCounts::first(0.0);
+        let context = unguided(&emission_estimator, &counts);
         let (mut variance, mut steps) = (0.0, 0.0);
         for i in 0..SIZE.element_product() {
             let pixel = UVec2::new(i % SIZE.x, i / SIZE.x);

@@ -46,38 +46,37 @@ pub(in crate::transport) fn first(strategy: &Strategy, guides: bool) -> LearnedC
     }
 }
 
-/// The counts with the least variance times cost for `scene` on a film of `size`; `context` builds
-/// the context of counts, `guides` says whether probes guide distances.
+/// The counts with the least variance times cost for `scene` on a film of `size`; `context` is that
+/// of first samples.
 ///
 /// # Errors
 /// [`Error::Cancelled`](crate::error::Error::Cancelled) where `progress` says so.
-pub(in crate::transport) fn learn<'s>(
+pub(in crate::transport) fn learn(
     scene: &Scene,
     size: UVec2,
-    guides: bool,
-    context: impl Fn(LearnedCounts) -> PathContext<'s> + Sync,
+    context: PathContext<'_>,
     progress: Progress,
 ) -> Result<LearnedCounts> {
-    let first = first(&scene.strategy, guides);
+    let first = *context.counts;
     if size.min_element() == 0 {
         return Ok(first);
     }
-    let learns_flights = guides && scene.strategy.learns_share();
+    let learns_flights = scene.strategy.learns_share() && context.probes.is_some();
     // Without guided flights first, since the price of paths decides how many of them pay.
     let without = if learns_flights { 0.0 } else { first.guided_flights };
     let first = first.with_guided_flights(without);
-    let first = light_counts::learn(scene, size, first, &context, progress)?;
+    let first = light_counts::learn(scene, size, context.with_counts(&first), progress)?;
     let learns_ends = learns_ends(scene);
     if !learns_flights && !learns_ends {
         return Ok(first);
     }
     let scales = if learns_flights { &TRIED[..] } else { &[without] };
-    let trials = trials(scene, size, first, scales, &context, progress)?;
+    let trials = trials(scene, size, context.with_counts(&first), scales, progress)?;
     let counts = best(&trials, first, scales, learns_ends);
     if counts.guided_flights == without {
         return Ok(counts);
     }
-    light_counts::learn(scene, size, counts, &context, progress)
+    light_counts::learn(scene, size, context.with_counts(&counts), progress)
 }
 
 /// Whether there is a choice how the light at the end of rays is gathered.
@@ -91,16 +90,16 @@ fn learns_ends(scene: &Scene) -> bool {
 }
 
 /// Trials of several scales of guided flights, side by side.
-fn trials<'s>(
+fn trials(
     scene: &Scene,
     size: UVec2,
-    first: LearnedCounts,
+    context: PathContext<'_>,
     scales: &[f32],
-    context: &(impl Fn(LearnedCounts) -> PathContext<'s> + Sync),
     progress: Progress,
 ) -> Result<Vec<Trial>> {
     let trial = |guided_flights: f32| {
-        Trial::new(scene, size, first.with_guided_flights(guided_flights), context, progress)
+        let counts = context.counts.with_guided_flights(guided_flights);
+        Trial::new(scene, size, context.with_counts(&counts), progress)
     };
     let trial = &trial;
     let mut trials: Vec<Option<Result<Trial>>> = scales.iter().map(|_| None).collect();

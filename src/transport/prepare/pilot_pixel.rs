@@ -16,10 +16,10 @@ use crate::{
 const SEED: u64 = 0x6f70_7469_6d61_6c21;
 
 /// Cost that one set of pilot paths is worth for each pixel of the film, in tracking steps of one of
-/// two paths at each pilot pixel: about as much as a quarter of a sample.
-const BUDGET_PER_PIXEL: f64 = 32.0;
+/// two paths at each pilot pixel: about as much as an eighth of a sample.
+const BUDGET_PER_PIXEL: f64 = 16.0;
 /// Least and most cost of a set of pilot paths.
-const BUDGET: [f64; 2] = [16_384.0, 524_288.0];
+const BUDGET: [f64; 2] = [16_384.0, 262_144.0];
 
 /// Cost that one set of pilot paths may take for a film of `size`.
 pub(in crate::transport) fn budget(size: UVec2) -> f64 {

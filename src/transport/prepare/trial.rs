@@ -71,16 +71,16 @@ pub(super) struct Trial {
 }
 
 impl Trial {
-    /// Measures `counts` of the guided flights with every choice of ray ends.
-    pub(super) fn new<'s>(
+    /// Measures the counts of `context` with every choice of ray ends.
+    pub(super) fn new(
         scene: &Scene,
         size: UVec2,
-        counts: LearnedCounts,
-        context: &(impl Fn(LearnedCounts) -> PathContext<'s> + Sync),
+        context: PathContext<'_>,
         progress: Progress,
     ) -> Result<Self> {
-        let guides = counts.guided_flights > 0.0;
-        let context = context(counts.with_all_by_transmittance(HALF));
+        let guides = context.counts.guided_flights > 0.0;
+        let counts = context.counts.with_all_by_transmittance(HALF);
+        let context = context.with_counts(&counts);
         let none = [0.0; RayEnds::COUNT];
         let mut trial = Self { variance: none, emission: 0.0, cost: none };
         let (budget, mut pixels, mut spent) = (budget(size), 0, 0.0);
