@@ -69,7 +69,7 @@ const FIRE_AND_LAMPS: &str = r#"
 
 /// Counts that are a hash of technique, class, position and throughput give the mean of counts of
 /// one, with paths of up to one, two and three bounces and with long ones, under every kind of
-/// emission walk. Each setting is held to 3.7 % at 99 %, all of them together to less than 1 %.
+/// emission walk. Each setting is held to 3.7 % at 99 %.
 #[test]
 fn the_picture_does_not_depend_on_the_counts() {
     let full = Preset::Full.strategy();
