@@ -163,7 +163,7 @@ fn rate(
     Some(Rated { name, strategy, program: program.to_owned(), efficiency, error })
 }
 
-/// What the program says of a picture.
+/// Statistics of a picture, as the program reports them.
 struct Picture {
     /// CPU seconds from the start.
     seconds: f64,

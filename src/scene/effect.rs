@@ -23,8 +23,8 @@ pub fn no_effect_with(
     toggle.idle(strategy, facts(settings))
 }
 
-/// What the scene holds for toggles to act on, as far as its settings tell: a scene that is built
-/// from them may hold less, never more.
+/// Properties of the scene of `settings` that decide which toggles have an effect, as far as they
+/// can be known before it is built. A property that is false here is false in the built scene.
 fn facts(settings: &Settings) -> SceneFacts {
     let volumes = || settings.volume.iter();
     SceneFacts {

@@ -20,7 +20,7 @@ pub struct PathContext<'s> {
 }
 
 impl<'s> PathContext<'s> {
-    /// The same with other expected counts.
+    /// This context with the expected `counts`.
     pub(super) fn with_counts<'c>(self, counts: &'c LearnedCounts) -> PathContext<'c>
     where
         's: 'c,

@@ -4,7 +4,7 @@
 //! | technique | rule |
 //! |---|---|
 //! | guided flights of a camera ray | as the radiance scattered into it, times the pilot's scale |
-//! | light samples of fires, of other lights; emission walks | learned by the pilot: [`super::learned_counts`] |
+//! | light samples, emission walks | learned by the pilot, see [`super::learned_counts`] |
 //! | light at the end of a ray | by arrival or by transmittance, learned by the pilot |
 //! | path continuation, near the camera inside of a medium | the weight window |
 //! | path continuation, elsewhere | Russian roulette on the throughput |

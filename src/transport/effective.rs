@@ -11,7 +11,7 @@ use super::toggle::Toggle;
 const MARCHING: &str =
     "ray marching (Advanced) collects emission and samples distances in its own way.";
 
-/// What a scene holds for toggles to act on.
+/// Properties of a scene that decide which toggles have an effect in it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SceneFacts {
     /// Whether any volume emits light.

@@ -37,7 +37,7 @@ impl Scene {
         Self { camera, world, surfaces, lights, max_scatters, strategy }.with_strategy(strategy)
     }
 
-    /// The same scene with another strategy, of which it keeps the part that acts in it.
+    /// This scene with `strategy`, of which it keeps the part that has an effect in it.
     pub fn with_strategy(self, strategy: Strategy) -> Self {
         let strategy = strategy.effective(self.facts());
         Self { strategy, ..self }
@@ -48,7 +48,7 @@ impl Scene {
         &self.strategy
     }
 
-    /// What the scene holds for toggles to act on.
+    /// Properties of the scene that decide which toggles have an effect in it.
     pub fn facts(&self) -> SceneFacts {
         let mut volumes = self.world.instances().iter().map(|instance| instance.volume());
         SceneFacts {

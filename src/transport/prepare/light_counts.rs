@@ -33,13 +33,13 @@ const GROUPS: usize = 8;
 /// Counts for each unit of throughput that are compared. Rarer samples would save little more, and
 /// bring more rare bright ones, which so few paths know nothing of.
 const TRIED: [f32; 7] = [0.125, 0.25, 0.5, 1.0, 2.0, 4.0, f32::INFINITY];
-/// Fewest light samples of lamps, and emission walks, for each unit of throughput: near to small lamps and
-/// inside of fires the other technique has rare bright finds.
+/// Fewest light samples of lamps, and emission walks, for each unit of throughput: near to small
+/// lamps and inside of fires the other technique has rare bright finds.
 const FEWEST: f32 = 0.25;
 /// Least part of the measured variance that any counts are taken to leave.
 const LEAST_LEFT: f64 = 0.1;
-/// Factor by which a change of a count must lower variance times cost. Samples that are spread evenly
-/// have less variance than the independent ones it is measured on, so that rounding adds more to it.
+/// Factor by which a change of a count must lower variance times cost. Samples that are spread
+/// evenly have less variance than the independent ones of the pilot, so that rounding adds more.
 const GAIN: f64 = 0.95;
 /// Rounds of improving one count after the other.
 const ROUNDS: u32 = 2;
@@ -167,7 +167,7 @@ impl Record {
     }
 }
 
-/// What was measured on a group of pixels.
+/// Variance, cost and records of a group of pixels.
 #[derive(Debug, Default)]
 struct Group {
     /// Sum of the variances of the pixels.
@@ -176,12 +176,12 @@ struct Group {
     cost: f64,
     /// The records of each pixel, by the class of their vertex.
     records: [Vec<Vec<Record>>; BounceClass::COUNT],
-    /// What the techniques of each class add to variance and cost, by the best counts so far.
+    /// Variance and cost that the techniques of each class add, by the best counts so far.
     added: [(f64, f64); BounceClass::COUNT],
 }
 
 impl Group {
-    /// What the techniques of a class add to variance and cost, by `rules`.
+    /// Variance and cost that the techniques of a class add to the group, by `rules`.
     fn added(&self, class: BounceClass, rules: &ClassCounts) -> (f64, f64) {
         let sum = |sum: (f64, f64), records: &Vec<Record>| {
             let (variance, cost) = added(class, records, rules);
@@ -190,7 +190,7 @@ impl Group {
         self.records[class as usize].iter().fold((0.0, 0.0), sum)
     }
 
-    /// Variance times cost if the techniques of a class added something else.
+    /// Variance times cost of the group if the techniques of a class added `added`.
     fn product(&self, class: BounceClass, added: (f64, f64)) -> f64 {
         let before = self.added[class as usize];
         let variance = self.variance + added.0 - before.0;
@@ -198,7 +198,7 @@ impl Group {
         variance.max(LEAST_LEFT * self.variance) * cost
     }
 
-    /// Takes in what the techniques of a class add from now on.
+    /// Sets the variance and cost that the techniques of a class add.
     fn set(&mut self, class: BounceClass, added: (f64, f64)) {
         let before = std::mem::replace(&mut self.added[class as usize], added);
         self.variance += added.0 - before.0;
@@ -206,7 +206,7 @@ impl Group {
     }
 }
 
-/// What the techniques of a class add to the variance of a pixel and to its cost, by `rules`.
+/// Variance and cost that the techniques of a class add to a pixel, by `rules`.
 ///
 /// At the first vertex the counts are rounded by numbers that are spread evenly over the samples of
 /// a pixel, so that only the variance of a technique's samples matters; later, their second moment.
@@ -379,7 +379,8 @@ mod tests {
         }
     }
 
-    /// What one sample brings for nothing stays; what costs much and brings little becomes rare.
+    /// Samples that cost nothing keep their count; samples that cost much for their variance become
+    /// rare.
     #[test]
     fn counts_fall_where_samples_cost_more_than_they_bring() {
         let learned = |cost: f64| {

@@ -130,6 +130,8 @@ impl Trial {
 #[derive(Debug)]
 struct EndObserver<'s> {
     cost: Cost<'s>,
+    /// Whether camera rays need their transmittance for coverage.
+    covers: bool,
     by_arrival: [f64; BounceClass::COUNT],
     by_transmittance: [f64; BounceClass::COUNT],
     /// Cost of walks for the transmittance alone.
@@ -139,8 +141,8 @@ struct EndObserver<'s> {
 impl<'s> EndObserver<'s> {
     fn new(scene: &'s Scene) -> Self {
         let none = [0.0; BounceClass::COUNT];
-        let cost = Cost::new(scene);
-        Self { cost, by_arrival: none, by_transmittance: none, walks: none }
+        let (cost, covers) = (Cost::new(scene), scene.strategy.gathers_whole_rays());
+        Self { cost, covers, by_arrival: none, by_transmittance: none, walks: none }
     }
 
     /// All light of the path but the emission that is seen directly and the light at the ends.
@@ -158,9 +160,10 @@ impl<'s> EndObserver<'s> {
         (0..BounceClass::COUNT).map(one).sum()
     }
 
-    /// Cost of the walks that a choice needs not. A camera ray's is needed for coverage.
+    /// Cost of the walks that a choice needs not. A camera ray's is needed for coverage, where the
+    /// strategy gathers whole rays.
     fn saved(&self, choice: RayEnds) -> f64 {
-        let classes = 1..BounceClass::COUNT;
+        let classes = usize::from(self.covers)..BounceClass::COUNT;
         classes
             .filter(|&class| !choice.by_transmittance(class))
             .map(|class| self.walks[class])
