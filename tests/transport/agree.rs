@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use crate::common::{
-    self, Expected, REFERENCED, Verdicts, all_strategies, build, full_name, measure_closely,
-    with_strategy,
+    self, EVERYTHING, Expected, REFERENCED, Verdicts, all_strategies, build, full_name,
+    measure_closely, with_strategy,
 };
 use flambeau::transport::{
     Frame, PreparedFrame,
@@ -12,63 +12,6 @@ use flambeau::transport::{
 };
 use glam::UVec2;
 use rayon::prelude::*;
-
-/// Fire with soot inside scattering smoke on a floor, a lamp, a sun and a metal ball.
-const EVERYTHING: &str = r#"
-    [camera]
-    position = [0, -5, 1.5]
-    target = [0, 0, 0]
-    fov_x = 40
-    [environment]
-    radiance = [0.02, 0.03, 0.05]
-    [[volume]]
-    name = "fire"
-    shape = "noise"
-    half_size = [0.5, 0.5, 0.9]
-    frequency = 2.0
-    contrast = 3.0
-    density = { scale = 1.5 }
-    albedo = 0.3
-    emission = { mode = "source", le = [8.0, 3.0, 1.0] }
-    [[volume]]
-    name = "smoke"
-    shape = "noise"
-    half_size = [1.2, 0.8, 1.0]
-    translate = [0.2, -0.4, 0.0]
-    frequency = 1.0
-    contrast = 2.0
-    density = { scale = 2.0 }
-    albedo = [0.9, 0.8, 0.7]
-    phase = { g = 0.5 }
-    [[light]]
-    type = "sphere"
-    center = [1.5, -1.0, 1.2]
-    radius = 0.2
-    radiance = [2.0, 4.0, 8.0]
-    [[light]]
-    type = "sun"
-    direction = [-1, 1, -1]
-    irradiance = 0.5
-    angle = 3
-    [[light]]
-    type = "spot"
-    position = [-2, -2, 3]
-    target = [0, 0, 0]
-    intensity = 4.0
-    cone = 30
-    blend = 0.5
-    [[surface]]
-    shape = "plane"
-    point = [0, 0, -1.0]
-    normal = [0, 0, 1]
-    half_size = 5.0
-    material = { type = "diffuse", reflectance = 0.5 }
-    [[surface]]
-    shape = "sphere"
-    center = [1.2, -0.6, -0.6]
-    radius = 0.4
-    material = { type = "conductor", alpha = 0.3, reflectance = 0.9 }
-"#;
 
 #[test]
 fn every_combination_gives_one_picture() {

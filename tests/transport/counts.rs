@@ -1,11 +1,11 @@
-//! Expected counts of light samples, emission walks and ways to gather the end of a ray: whatever
-//! they are, the picture is the same; and where a toggle is said to change nothing, so is every bit.
+//! Expected counts of light samples, emission walks and ways to gather the end of a ray: the picture
+//! is the same with any of them. Where a toggle is said to change nothing, so is every bit.
 
 use std::sync::Arc;
 
 use crate::common::{
-    self, Expected, REFERENCED, Verdicts, all_strategies, build, full_name, measure_closely, name,
-    with_strategy,
+    self, EVERYTHING, Expected, REFERENCED, Verdicts, all_strategies, build, full_name,
+    measure_closely, name, with_strategy,
 };
 use flambeau::{
     scene::{self, Overrides, effect::no_effect_with},
@@ -17,55 +17,6 @@ use flambeau::{
     },
 };
 use glam::UVec2;
-
-/// Colored smoke and fire that overlap, a floor, a glossy ball that shines, a lamp and a sun.
-const FIRE_AND_LAMPS: &str = r#"
-    [camera]
-    position = [0, -5, 1.5]
-    target = [0, 0, 0]
-    fov_x = 40
-    [environment]
-    radiance = [0.1, 0.15, 0.25]
-    [[volume]]
-    shape = "noise"
-    half_size = [0.5, 0.5, 0.9]
-    frequency = 2.0
-    contrast = 3.0
-    density = { scale = 1.5 }
-    albedo = 0.3
-    emission = { mode = "source", le = [8.0, 3.0, 1.0] }
-    [[volume]]
-    shape = "noise"
-    half_size = [1.2, 0.8, 1.0]
-    translate = [0.2, -0.4, 0.0]
-    frequency = 1.0
-    contrast = 2.0
-    density = { scale = [1.5, 2.0, 2.5] }
-    albedo = [0.9, 0.8, 0.7]
-    phase = { g = 0.5 }
-    [[light]]
-    type = "sphere"
-    center = [1.5, -1.0, 1.2]
-    radius = 0.2
-    radiance = [2.0, 4.0, 8.0]
-    [[light]]
-    type = "sun"
-    direction = [-1, 1, -1]
-    irradiance = 0.5
-    angle = 3
-    [[surface]]
-    shape = "plane"
-    point = [0, 0, -1.0]
-    normal = [0, 0, 1]
-    half_size = 5.0
-    material = { type = "diffuse", reflectance = 0.5 }
-    [[surface]]
-    shape = "sphere"
-    center = [1.2, -0.6, -0.6]
-    radius = 0.4
-    material = { type = "conductor", alpha = 0.3, reflectance = 0.9 }
-    emission = [0.2, 0.1, 0.05]
-"#;
 
 /// Counts that are a hash of technique, class, position and throughput give the mean of counts of
 /// one, with paths of up to one, two and three bounces and with long ones, under every kind of
@@ -81,9 +32,10 @@ fn the_picture_does_not_depend_on_the_counts() {
         Strategy { emission_ratio_tracking: false, emission_decoupling: false, ..full },
         Strategy { majorant_boost: false, probe_mis: false, ..full },
     ];
+    let colored = EVERYTHING.replace("scale = 2.0", "scale = [1.5, 2.0, 2.5]");
     let mut verdicts = Verdicts::of_power(REFERENCED);
     for cap in [1, 2, 3, 0] {
-        let text = format!("{FIRE_AND_LAMPS}\n[path]\nmax_scatters = {cap}");
+        let text = format!("{colored}\n[path]\nmax_scatters = {cap}");
         let scene = build(&text);
         let reference =
             measure_closely(&with_strategy(&scene, Preset::Emission.strategy()), 2_000_000);
@@ -98,86 +50,47 @@ fn the_picture_does_not_depend_on_the_counts() {
     verdicts.finish();
 }
 
-/// Scenes in which some toggles have no effect, each with what makes it special.
-const PLAIN: [(&str, &str); 6] = [
-    (
-        "smoke alone",
-        r#"[[volume]]
-        shape = "noise"
-        half_size = 1.0
-        density = { scale = 3.0 }
-        albedo = 0.8"#,
-    ),
-    (
-        "fire that nothing scatters",
-        r#"[[volume]]
-        shape = "noise"
-        half_size = 1.0
-        density = { scale = 3.0 }
-        albedo = 0.0
-        emission = { mode = "source", le = 2.0 }"#,
-    ),
-    (
-        "fire beside a black ball",
-        r#"[[volume]]
-        shape = "box"
-        half_size = 1.0
-        density = { scale = 0.3 }
-        albedo = 0.0
-        emission = { mode = "constant", value = 0.5 }
-        [[surface]]
-        shape = "sphere"
-        center = [0, 0, 0]
-        radius = 0.3
-        material = { type = "conductor", alpha = 0.1, reflectance = 0.0 }"#,
-    ),
-    (
-        "fire in smoke",
-        r#"[[volume]]
-        shape = "noise"
-        half_size = 1.0
-        density = { scale = 2.0 }
-        albedo = 0.7
-        emission = { mode = "source", le = 2.0 }"#,
-    ),
-    (
-        "a fire that is off in smoke",
-        r#"[[volume]]
-        shape = "noise"
-        half_size = 1.0
-        density = { scale = 2.0 }
-        albedo = 1.0
-        emission = { mode = "source", le = 2.0 }
-        [[volume]]
-        shape = "everywhere"
-        density = { scale = 0.05 }
-        albedo = 0.7
-        emission = { mode = "constant", value = 0.0 }"#,
-    ),
-    (
-        "fog that burns, and fire",
-        r#"[[volume]]
-        shape = "everywhere"
-        density = { scale = 0.05 }
-        albedo = 0.7
-        emission = { mode = "constant", value = 0.01 }
-        [[volume]]
-        shape = "box"
-        half_size = 0.5
-        density = { scale = 0.5 }
-        albedo = 0.5
-        emission = { mode = "constant", value = 1.0 }"#,
-    ),
-];
+/// A volume of a shape, with its medium.
+fn volume(shape: &str, scale: f64, albedo: f64, emission: &str) -> String {
+    let half_size = if shape == "everywhere" { "" } else { "half_size = 0.8" };
+    format!(
+        "[[volume]]\nshape = \"{shape}\"\n{half_size}\ndensity = {{ scale = {scale} }}\n\
+         albedo = {albedo}\n{emission}\n"
+    )
+}
+
+/// Scenes in which some toggles have no effect, each with its name.
+fn plain_scenes() -> [(&'static str, String); 6] {
+    let source = r#"emission = { mode = "source", le = 2.0 }"#;
+    let constant = |value: f64| format!("emission = {{ mode = \"constant\", value = {value} }}");
+    let black_ball = "[[surface]]\nshape = \"sphere\"\ncenter = [0, 0, 0]\nradius = 0.3\n\
+                      material = { type = \"conductor\", alpha = 0.1, reflectance = 0.0 }\n";
+    [
+        ("smoke alone", volume("noise", 3.0, 0.8, "")),
+        ("fire that nothing scatters", volume("noise", 3.0, 0.0, source)),
+        ("fire around a black ball", volume("box", 0.3, 0.0, &constant(0.5)) + black_ball),
+        ("fire in smoke", volume("noise", 2.0, 0.7, source)),
+        (
+            "fires that are off",
+            volume("noise", 2.0, 1.0, source) + &volume("everywhere", 0.05, 0.7, &constant(0.0)),
+        ),
+        (
+            "fog that burns, and fire",
+            volume("everywhere", 0.05, 0.7, &constant(0.01))
+                + &volume("box", 0.5, 0.5, &constant(1.0)),
+        ),
+    ]
+}
 
 /// Wherever a toggle is said to have no effect, samples with it on and off are the same to the
 /// last bit, and take the same steps.
 #[test]
 fn a_toggle_without_effect_changes_no_bit() {
     let mut claims = 0;
-    for (what, text) in PLAIN {
+    for (what, volumes) in plain_scenes() {
         let text = format!(
-            "[camera]\nposition = [0, -4, 0.5]\ntarget = [0, 0, 0]\n[environment]\nradiance = 0.3\n{text}"
+            "[camera]\nposition = [0, -4, 0.5]\ntarget = [0, 0, 0]\n\
+             [environment]\nradiance = 0.3\n{volumes}"
         );
         let settings =
             scene::parse(&text, what, std::path::Path::new("."), &Overrides::default()).unwrap();

@@ -6,7 +6,8 @@ use crate::common::{
     half_of_strategies, name, with_strategy,
 };
 
-use flambeau::transport::strategy::{NeeEvaluation, Strategy};
+use flambeau::transport::learned_counts::LearnedCounts;
+use flambeau::transport::strategy::{NeeEvaluation, Preset, Strategy};
 
 const CAMERA: &str = r#"
     [camera]
@@ -52,12 +53,8 @@ fn check_everywhere(text: &str, paths: u32, expected: f64) {
     verdicts.finish();
 }
 
-/// Environment B, ε = μ_a B, a mirror-like metal of reflectance 1 is white only without masking
-/// loss, so the surfaces are diffuse: one white, one of reflectance ρ that emits (1 − ρ) B.
-#[test]
-fn everything_glows_alike() {
-    let glow = r#"emission = { mode = "source", le = 2.0 }"#;
-    let surfaces = r#"
+/// Surfaces that glow with the fire: with B = 2, one of reflectance ρ emits (1 − ρ) B.
+const GLOWING_SURFACES: &str = r#"
         [environment]
         radiance = 2.0
         [[surface]]
@@ -86,7 +83,37 @@ fn everything_glows_alike() {
         material = { type = "black" }
         emission = 2.0
     "#;
-    check_everywhere(&format!("{CAMERA}{surfaces}{}", volumes(0.6, glow)), 300_000, 2.0);
+const GLOW: &str = r#"emission = { mode = "source", le = 2.0 }"#;
+
+/// Environment B, ε = μ_a B, a mirror-like metal of reflectance 1 is white only without masking
+/// loss, so the surfaces are diffuse: one white, one of reflectance ρ that emits (1 − ρ) B.
+#[test]
+fn everything_glows_alike() {
+    check_everywhere(&format!("{CAMERA}{GLOWING_SURFACES}{}", volumes(0.6, GLOW)), 300_000, 2.0);
+}
+
+/// Nor does it matter how often fires and lamps are sampled and emission is gathered at a vertex:
+/// counts that are a hash of the vertex, under every kind of emission walk. Weights have to be made
+/// of the counts of the vertex that a ray left, and of no other, at all vertices.
+#[test]
+fn everything_glows_alike_whatever_the_counts() {
+    let scene = build(&format!("{CAMERA}{GLOWING_SURFACES}{}", volumes(0.8, GLOW)));
+    let full = Preset::Full.strategy();
+    let mut verdicts = Verdicts::default();
+    for (hash, strategy) in [
+        full,
+        Preset::Emission.strategy(),
+        Strategy { emission_ratio_tracking: false, ..full },
+        Strategy { majorant_boost: false, probe_mis: false, ..full },
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let (scene, expected) = (with_strategy(&scene, strategy), Expected::known(&[2.0; 3]));
+        let counts = LearnedCounts::hashed(0.5, hash as u32);
+        verdicts.hold_counts(&name(&strategy), &scene, counts, 2_000_000, &expected);
+    }
+    verdicts.finish();
 }
 
 /// White furnace: nothing absorbs, the environment is 1, and so is every pixel.
