@@ -187,14 +187,19 @@ impl LearnedCounts {
 
 impl VertexCounts {
     /// Counts that are a hash: 0 for every third vertex where another technique finds the same
-    /// light.
+    /// light, and few at first vertices. Were counts of successive vertices distributed alike, the
+    /// errors of a weight with the count of the wrong one would cancel.
     fn hashed(hash: u32, class: BounceClass, position: Vec3A, throughput: f32) -> Self {
         let unit = |technique| unit_hash(hash, [class as u32, technique], position, throughput);
         let count = |u: f32, most: f32| LEAST_COUNT + u * (most - LEAST_COUNT);
+        let most = match class {
+            BounceClass::FirstInMedium | BounceClass::FirstOnSurface => 0.5,
+            _ => 4.0,
+        };
         let fires = unit(0);
         Self {
-            fire_samples: if fires < 1.0 / 3.0 { 0.0 } else { count(1.5 * fires - 0.5, 4.0) },
-            lamp_samples: count(unit(1), 4.0),
+            fire_samples: if fires < 1.0 / 3.0 { 0.0 } else { count(1.5 * fires - 0.5, most) },
+            lamp_samples: count(unit(1), most),
             emission_walks: count(unit(2), 1.0),
         }
     }
