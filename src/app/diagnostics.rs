@@ -58,7 +58,8 @@ impl Diagnostics {
         live_render.set_layer(self.wanted.layer);
         let scene = live_render.built().map(|built| built.scene.clone());
         let cells = self.wanted.cells.zip(scene.clone()).map(|(value, scene)| {
-            let probes = if value == CellValue::Probes { live_render.probes() } else { None };
+            let probes = (value == CellValue::Probes).then(|| live_render.probes()).flatten();
+            let probes = probes.map(|probes| probes.best().clone());
             CellSource { value, scene, probes }
         });
         let wake = ctx.clone();

@@ -73,7 +73,7 @@ impl Observer for Log {
                 format!("    end of the ray, adds {}", triple(contribution))
             }
             PathStep::Absorbed { point } => format!("    absorbed at {}", triple(point)),
-            PathStep::Vertex { vertex, throughput } => {
+            PathStep::Vertex { vertex, throughput, .. } => {
                 format!("    {}, throughput {}", describe(vertex), triple(throughput))
             }
             PathStep::Light { contribution, .. } => {

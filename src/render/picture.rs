@@ -8,6 +8,7 @@ use super::coarse::{representative, shown_pixel};
 use super::estimate::{FilmStats, LineStats, PixelEstimate, samples_per_pixel};
 use super::film::Film;
 use super::layers::{Layer, LayerMap};
+use crate::transport::path_setup::Spending;
 
 /// A finished image of an unfinished render.
 #[derive(Clone, Debug, Default)]
@@ -74,6 +75,8 @@ pub struct RenderStats {
     /// Guided flights of a camera ray, relative to those that the probes propose, see
     /// [`Prepared::guided_flights`](crate::transport::Prepared::guided_flights).
     pub guided_flights: Option<f32>,
+    /// How the time is spent, see [`Prepared::spending`](crate::transport::Prepared::spending).
+    pub spending: Option<Spending>,
     /// Whether the limit is reached.
     pub finished: bool,
 }
@@ -172,6 +175,7 @@ pub(crate) fn render_stats(
         guard_hits: film.totals.guard_hits,
         noise,
         guided_flights: None,
+        spending: None,
         finished,
     }
 }

@@ -178,7 +178,8 @@ impl ProgressiveRender {
         picture.region = self.area.map(|area| (area, self.film.fewest_samples(area)));
         picture.stats = RenderStats {
             cpu_seconds: self.cpu_seconds,
-            guided_flights: self.prepared.and_then(|prepared| prepared.guided_flights()),
+            spending: self.prepared.as_ref().and_then(Prepared::spending).copied(),
+            guided_flights: self.prepared.as_ref().and_then(Prepared::guided_flights),
             ..render_stats(&self.film, self.seconds, noise, self.is_finished())
         };
     }

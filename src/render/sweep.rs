@@ -28,9 +28,11 @@ use super::pool::{Failure, Pool};
 use super::time_slice::{Amount, RenderedSide, SideInProgress, take_turns};
 use super::turns::Usage;
 use crate::error::{self, Error, Result, report};
+use crate::transport::path_setup::Spending;
+use crate::transport::prepare::SceneProbes;
 use crate::transport::probes::Probes;
 use crate::transport::strategy::Strategy;
-use crate::transport::{Frame, PixelSampler, PreparedFrame, Scene, prepare};
+use crate::transport::{Frame, PixelSampler, PreparedFrame, Scene};
 
 /// Default CPU seconds of each strategy.
 pub const DEFAULT_SECONDS: f64 = 3.0;
@@ -109,6 +111,8 @@ pub fn sweep(
 ) -> Result<Swept> {
     let frames = prepare_all(job, pool, interrupt, progress)?;
     let numbers: Vec<usize> = frames.iter().map(|(number, _)| *number).collect();
+    let spending: Vec<Option<Spending>> =
+        frames.iter().map(|(_, frame)| frame.spending().copied()).collect();
     let begin = |(_, frame): (usize, PreparedFrame)| {
         let sampler: Arc<dyn PixelSampler> = Arc::new(frame);
         SideInProgress::new(sampler, job.size, job.amount)
@@ -120,9 +124,9 @@ pub fn sweep(
         progress(SweepProgress::Rendering(sum / usages.len() as f64));
     });
     let mut swept = Swept { tried: vec![None; job.trials.len()], interrupted, failure: None };
-    for (number, side) in std::iter::zip(numbers, sides) {
+    for ((number, spending), side) in std::iter::zip(numbers.into_iter().zip(spending), sides) {
         let rendered = side.finish(pool);
-        let side = pool.install(|| measured(&rendered));
+        let side = SideFigures { spending, ..pool.install(|| measured(&rendered)) };
         swept.tried[number] = Some(Tried { side, totals: rendered.film.totals });
         swept.failure = swept.failure.or(rendered.failure.map(|failure| (number, failure)));
     }
@@ -151,7 +155,7 @@ fn prepare_all(
     let is_rendered = |(_, trial): &(usize, &Trial)| trial.source == TrialSource::Rendered;
     let rendered: Vec<(usize, &Trial)> =
         job.trials.iter().enumerate().filter(is_rendered).collect();
-    let mut known: Vec<(Strategy, Arc<Probes>)> = Vec::new();
+    let mut known: Vec<(Strategy, Arc<SceneProbes>)> = Vec::new();
     let mut frames = Vec::with_capacity(rendered.len());
     for (done, (number, trial)) in rendered.iter().enumerate() {
         progress(SweepProgress::Preparing(done, rendered.len()));
@@ -173,14 +177,14 @@ fn prepare_all(
 /// ones, which are known from then on.
 fn probes(
     scene: &Scene,
-    known: &mut Vec<(Strategy, Arc<Probes>)>,
+    known: &mut Vec<(Strategy, Arc<SceneProbes>)>,
     go_on: error::Progress,
-) -> Result<Option<Arc<Probes>>> {
+) -> Result<Option<Arc<SceneProbes>>> {
     let Some(recipe) = Probes::recipe(scene.strategy()) else { return Ok(None) };
     if let Some((_, probes)) = known.iter().find(|(other, _)| *other == recipe) {
         return Ok(Some(probes.clone()));
     }
-    let probes = prepare::probes(scene, go_on)?.map(Arc::new);
+    let probes = SceneProbes::placed(scene, go_on)?.map(Arc::new);
     known.extend(probes.clone().map(|probes| (recipe, probes)));
     Ok(probes)
 }

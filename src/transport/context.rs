@@ -31,14 +31,14 @@ impl<'s> PathContext<'s> {
     /// Probes that guide scattering distances, and the weight window with them; `None` where the
     /// strategy does not guide, or where the pilot pass found that guided flights gain nothing.
     pub(super) fn probes_for_distances(&self, strategy: &Strategy) -> Option<&'s Probes> {
-        self.probes_for_directions(strategy).filter(|_| self.counts.guided_flights > 0.0)
+        self.probes.filter(|_| self.counts.guided_flights > 0.0 && strategy.guides())
     }
 
-    /// Probes that guide directions at vertices; `None` where the strategy does not guide. The
-    /// pilot pass does not switch them off: caustics are worth guiding to without guided flights as
-    /// well.
+    /// Probes that guide directions at vertices; `None` where the strategy does not guide, or where
+    /// the pilot pass found that they gain nothing. Caustics may be worth guiding to without guided
+    /// flights as well.
     pub(super) fn probes_for_directions(&self, strategy: &Strategy) -> Option<&'s Probes> {
-        self.probes.filter(|_| strategy.guides())
+        self.probes.filter(|_| self.counts.guided_directions && strategy.guides())
     }
 
     /// Probes that choose lights. Their light scores serve whether or not the strategy guides:

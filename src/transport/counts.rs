@@ -16,7 +16,7 @@ use super::context::PathContext;
 use super::probes::{Brightness, DistancePdf};
 use super::strategy::{Distance, ScatterProbability, Strategy};
 use super::vertex::Vertex;
-use super::weight_window::{MOST_NESTED, Splitting};
+use super::weight_window::{MOST_BRANCHES, MOST_NESTED, Splitting};
 use crate::math::{PathRng, Rgb, mean};
 use crate::sampling::mis;
 
@@ -47,6 +47,8 @@ pub(super) struct PathValue {
     pub(super) expected: f32,
     /// Splits whose branches are being followed.
     pub(super) nested: u32,
+    /// Branches of the sample so far.
+    pub(super) branches: u32,
 }
 
 /// The number of paths that go on from one vertex.
@@ -80,7 +82,7 @@ impl Counts {
         });
         Self {
             window,
-            may_split: path.nested < MOST_NESTED,
+            may_split: path.nested < MOST_NESTED && path.branches < MOST_BRANCHES,
             survives_roulette: is_known && path.scatters + 1 < WEIGHED_VERTICES,
             scatters: path.scatters + 1,
         }

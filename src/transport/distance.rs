@@ -210,7 +210,7 @@ impl<'g> GuidedDistances<'g> {
 #[cfg(test)]
 mod tests {
     use crate::error::NO_PROGRESS;
-    use crate::transport::prepare;
+    use crate::transport::prepare::SceneProbes;
     use glam::UVec2;
 
     use super::*;
@@ -337,13 +337,14 @@ mod tests {
     #[test]
     fn weights_divide_by_the_mixture_of_what_draws() {
         let scene = Scene::of_text(SMOKE);
-        let probes = prepare::probes(&scene, NO_PROGRESS).unwrap().unwrap();
+        let probes = SceneProbes::placed(&scene, NO_PROGRESS).unwrap().unwrap();
+        let probes = probes.fine(&scene, NO_PROGRESS).unwrap();
         let scatter_probability = ScatterProbability::Even;
         let advanced = Advanced { scatter_probability, ..Advanced::default() };
         let strategy = Strategy { advanced, ..scene.strategy };
         let mut checked = [0; 2];
         for index in 0..8000 {
-            let Some((guide, medium)) = guided_ray(&scene, &probes, index) else { continue };
+            let Some((guide, medium)) = guided_ray(&scene, probes, index) else { continue };
             let kind = (index / 3 % 2) as usize;
             let draw = [one_of_one, one_of_several][kind];
             let Drawn { flight, plain, counts } = draw(&strategy, &guide, &medium, index);

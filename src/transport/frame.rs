@@ -6,13 +6,13 @@ use std::sync::Arc;
 
 use glam::{UVec2, Vec2};
 
-use super::context::PathContext;
 use super::emission::EmissionEstimator;
 use super::learned_counts::LearnedCounts;
 use super::observer::{Nobody, Observer};
 use super::path;
-use super::prepare::{self, pilot};
-use super::probes::{Brightness, Probes};
+use super::path_setup::{Guides, PathSetup, Spending};
+use super::prepare::pilot_film::PilotFilm;
+use super::prepare::{self, SceneProbes, pilot};
 use super::sample::{PathSample, PixelSampler, Prepared, SampleNumber};
 use super::scene::Scene;
 use crate::error::{NO_PROGRESS, Progress, Result};
@@ -25,10 +25,9 @@ pub struct Frame {
     size: UVec2,
     seed: u64,
     pub(super) emission_estimator: EmissionEstimator,
-    pub(super) probes: Option<Arc<Probes>>,
-    pub(super) brightness: Brightness,
-    /// Counts of first samples.
-    first_counts: LearnedCounts,
+    scene_probes: Option<Arc<SceneProbes>>,
+    /// Guides and counts of first samples.
+    pub(super) first: PathSetup,
 }
 
 impl Frame {
@@ -39,7 +38,7 @@ impl Frame {
     /// # Errors
     /// [`Error::Cancelled`](crate::error::Error::Cancelled) where `progress` says so.
     pub fn new(scene: Arc<Scene>, size: UVec2, seed: u64, progress: Progress) -> Result<Self> {
-        let probes = prepare::probes(&scene, progress)?.map(Arc::new);
+        let probes = SceneProbes::placed(&scene, progress)?.map(Arc::new);
         Self::try_with_probes(scene, size, seed, probes, progress)
     }
 
@@ -49,17 +48,22 @@ impl Frame {
         scene: Arc<Scene>,
         size: UVec2,
         seed: u64,
-        probes: Option<Arc<Probes>>,
+        probes: Option<Arc<SceneProbes>>,
     ) -> Self {
+        let framed = Self::try_with_probes(scene.clone(), size, seed, probes, NO_PROGRESS);
         // Nothing cancels either.
-        let emission_estimator = prepare::emission_estimator(&scene, size, NO_PROGRESS)
-            .unwrap_or(EmissionEstimator::coarse());
-        let brightness = |probes: &Arc<Probes>| {
-            Brightness::new(probes, &scene, size, NO_PROGRESS).unwrap_or_default()
-        };
-        let brightness = probes.as_ref().map(brightness).unwrap_or_default();
-        let first_counts = first_counts(&scene, &probes);
-        Self { scene, size, seed, emission_estimator, probes, brightness, first_counts }
+        framed.unwrap_or_else(|_| Self {
+            first: PathSetup {
+                guides: None,
+                counts: pilot::unlearned(&scene.strategy),
+                spending: None,
+            },
+            emission_estimator: EmissionEstimator::coarse(),
+            scene_probes: None,
+            scene,
+            size,
+            seed,
+        })
     }
 
     /// [`Frame::with_probes`], unless `progress` cancels it.
@@ -70,16 +74,13 @@ impl Frame {
         scene: Arc<Scene>,
         size: UVec2,
         seed: u64,
-        probes: Option<Arc<Probes>>,
+        probes: Option<Arc<SceneProbes>>,
         progress: Progress,
     ) -> Result<Self> {
         let emission_estimator = prepare::emission_estimator(&scene, size, progress)?;
-        let brightness = match &probes {
-            Some(probes) => Brightness::new(probes, &scene, size, progress)?,
-            None => Brightness::default(),
-        };
-        let first_counts = first_counts(&scene, &probes);
-        Ok(Self { scene, size, seed, emission_estimator, probes, brightness, first_counts })
+        let film = PilotFilm { scene: &scene, size, emission_estimator: &emission_estimator };
+        let first = pilot::first(film, probes.as_deref(), progress)?;
+        Ok(Self { scene, size, seed, emission_estimator, scene_probes: probes, first })
     }
 
     /// A copy of the frame with another seed, which shares everything that was prepared.
@@ -107,20 +108,12 @@ impl Frame {
         };
         let offset = Vec2::new(rng.at(Slot::PixelX), rng.at(Slot::PixelY));
         let ray = self.scene.camera.ray(self.size, pixel, offset);
-        let counts = match number {
-            SampleNumber::Later(_, Prepared { counts: Some(counts) }) => counts,
-            _ => &self.first_counts,
+        let setup = match number {
+            SampleNumber::Later(_, Prepared { setup: Some(setup) }) => setup,
+            _ => &self.first,
         };
-        path::trace(&self.scene, self.context(counts), ray, &mut rng, observer)
-    }
-
-    fn context<'s>(&'s self, counts: &'s LearnedCounts) -> PathContext<'s> {
-        PathContext {
-            emission_estimator: &self.emission_estimator,
-            probes: self.probes.as_deref(),
-            brightness: self.brightness,
-            counts,
-        }
+        let context = setup.context(&self.emission_estimator);
+        path::trace(&self.scene, context, ray, &mut rng, observer)
     }
 
     /// Runs the pilot pass of the frame.
@@ -132,19 +125,34 @@ impl Frame {
         Ok(PreparedFrame { frame: self, prepared })
     }
 
-    /// The frame with the expected counts of first samples for all samples, no pilot pass run.
-    pub fn with_first_counts(self) -> PreparedFrame {
-        PreparedFrame { frame: self, prepared: Prepared::NOTHING }
+    /// The frame with all probes, and the expected counts of first samples for all samples, no pilot
+    /// pass run.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`](crate::error::Error::Cancelled) where `progress` says so.
+    pub fn with_first_counts(self, progress: Progress) -> Result<PreparedFrame> {
+        let counts = self.first.counts;
+        self.with_counts(counts, progress)
     }
 
-    /// The frame with the expected counts of every sample of a pixel but the first.
-    pub fn with_counts(self, counts: LearnedCounts) -> PreparedFrame {
-        PreparedFrame { frame: self, prepared: Prepared { counts: Some(counts) } }
+    /// The frame with all probes, and the expected `counts` of every sample of a pixel but the
+    /// first.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`](crate::error::Error::Cancelled) where `progress` says so.
+    pub fn with_counts(self, counts: LearnedCounts, progress: Progress) -> Result<PreparedFrame> {
+        let guides = match &self.scene_probes {
+            Some(probes) => Some(self.pilot_film().guides(probes, progress)?),
+            None => None,
+        };
+        let prepared = Prepared { setup: Some(PathSetup { guides, counts, spending: None }) };
+        Ok(PreparedFrame { frame: self, prepared })
     }
-}
 
-fn first_counts(scene: &Scene, probes: &Option<Arc<Probes>>) -> LearnedCounts {
-    pilot::first(&scene.strategy, probes.is_some() && scene.strategy.guides())
+    fn pilot_film(&self) -> PilotFilm<'_> {
+        let Self { scene, size, emission_estimator, .. } = self;
+        PilotFilm { scene, size: *size, emission_estimator }
+    }
 }
 
 impl PixelSampler for Frame {
@@ -156,9 +164,9 @@ impl PixelSampler for Frame {
         if self.scene.strategy.marches() {
             return Ok(Prepared::NOTHING);
         }
-        let context = self.context(&self.first_counts);
-        let counts = pilot::learn(&self.scene, self.size, context, progress)?;
-        Ok(Prepared { counts: Some(counts) })
+        let probes = self.scene_probes.as_deref();
+        let setup = pilot::learn(self.pilot_film(), &self.first, probes, progress)?;
+        Ok(Prepared { setup: Some(setup) })
     }
 }
 
@@ -180,7 +188,7 @@ impl PreparedFrame {
 
     /// A copy of the frame with another seed, which shares the result of the pilot pass.
     pub fn with_seed(&self, seed: u64) -> Self {
-        Self { frame: self.frame.with_seed(seed), prepared: self.prepared }
+        Self { frame: self.frame.with_seed(seed), prepared: self.prepared.clone() }
     }
 
     /// Pixels across and down.
@@ -196,6 +204,16 @@ impl PreparedFrame {
     /// Expected counts that the pilot pass learned; `None` where none was run.
     pub fn counts(&self) -> Option<&LearnedCounts> {
         self.prepared.counts()
+    }
+
+    /// Probes that guide the paths, and the brightness of the film by them; `None` where none do.
+    pub(super) fn guides(&self) -> Option<&Guides> {
+        self.prepared.setup.as_ref().and_then(|setup| setup.guides.as_ref())
+    }
+
+    /// How the time of the picture is spent; `None` where no pilot pass was run.
+    pub fn spending(&self) -> Option<&Spending> {
+        self.prepared.spending()
     }
 
     /// Guided flights of a camera ray, relative to those that the probes propose: the most
@@ -221,6 +239,6 @@ impl PixelSampler for PreparedFrame {
     }
 
     fn prepare(&self, _: Progress) -> Result<Prepared> {
-        Ok(self.prepared)
+        Ok(self.prepared.clone())
     }
 }

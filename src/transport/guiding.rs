@@ -23,6 +23,8 @@ use crate::volume::world::MediumRay;
 /// Most rays of a path that are guided: later ones contribute so little that guiding costs more
 /// than it gains, and each adds to the spread of the path's weight.
 const GUIDED_RAYS: u32 = 4;
+/// Number of the random numbers that a point of a light is drawn by where no light sample is drawn.
+const GUIDING_SAMPLE: u32 = 16;
 /// Share of the directions drawn towards caustics where there is no other indirect light.
 const MOST_CAUSTICS: f32 = 0.5;
 
@@ -83,6 +85,25 @@ pub(super) fn draw_guide(
     let equiangular =
         light_point.and_then(|point| Equiangular::new(ray, point, probes.mean_cosine(), t0, t1));
     (DistanceGuide::new(distance_pdf, equiangular), light_point)
+}
+
+/// The point of a light that guides the path beyond its vertex number `scatters`, where no light
+/// sample was drawn that has one; `None` where none guides.
+pub(super) fn light_point(
+    scene: &Scene,
+    context: &PathContext,
+    scatters: u32,
+    vertex: &Vertex,
+    rng: &mut PathRng,
+) -> Option<Vec3A> {
+    context.probes_for_distances(&scene.strategy).filter(|_| scatters < GUIDED_RAYS)?;
+    let advanced = &scene.strategy.advanced;
+    if !advanced.guide_directions && !advanced.equiangular {
+        return None;
+    }
+    rng.enter_light_sample(GUIDING_SAMPLE);
+    let choice = light_choice(scene, context, vertex, direct::choice(&scene.strategy).among);
+    direct::point_of_light(scene, &vertex.receiver(), &choice, rng)
 }
 
 /// Draws the direction in which a path continues from its vertex number `scatters`, with a share

@@ -94,6 +94,8 @@ pub struct LearnedCounts {
     /// Scale of the number of guided flights of a camera ray, relative to what the probes propose;
     /// 0 switches guided flights off.
     pub guided_flights: f32,
+    /// Whether probes guide directions at vertices, if there are any.
+    pub guided_directions: bool,
     classes: [ClassCounts; BounceClass::COUNT],
     /// Counts by a hash of the vertex in place of the rules, see [`LearnedCounts::hashed`].
     hash: Option<u32>,
@@ -120,7 +122,8 @@ impl LearnedCounts {
             emission_walks: CountRule::ONE,
             by_transmittance: 0.0,
         };
-        let mut counts = Self { guided_flights, classes: [one; BounceClass::COUNT], hash: None };
+        let classes = [one; BounceClass::COUNT];
+        let mut counts = Self { guided_flights, guided_directions: true, classes, hash: None };
         counts.at_mut(BounceClass::Camera).by_transmittance = 1.0;
         counts
     }
@@ -173,9 +176,20 @@ impl LearnedCounts {
         &mut self.classes[class as usize]
     }
 
-    /// These counts with another scale of guided flights.
-    pub fn with_guided_flights(self, guided_flights: f32) -> Self {
-        Self { guided_flights, ..self }
+    /// These counts with another scale of guided flights, and directions guided or not.
+    pub fn with_guidance(self, guided_flights: f32, guided_directions: bool) -> Self {
+        Self { guided_flights, guided_directions, ..self }
+    }
+
+    /// These counts with one light sample of each kind and one emission walk everywhere, so that
+    /// paths tell what each of them finds.
+    pub fn with_one_of_each(mut self) -> Self {
+        for class in &mut self.classes {
+            class.fire_samples = CountRule::ONE;
+            class.lamp_samples = CountRule::ONE;
+            class.emission_walks = CountRule::ONE;
+        }
+        self
     }
 
     /// These counts with the same share of light through the transmittance for all classes.

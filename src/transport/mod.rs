@@ -14,6 +14,7 @@ pub mod learned_counts;
 mod march;
 pub mod observer;
 pub mod path;
+pub mod path_setup;
 pub mod prepare;
 pub mod probes;
 pub mod profile;

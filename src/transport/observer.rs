@@ -45,6 +45,8 @@ pub enum PathStep<'a> {
     Vertex {
         /// The vertex.
         vertex: &'a Vertex,
+        /// Class of the vertex.
+        class: BounceClass,
         /// The path's throughput on arrival.
         throughput: Rgb,
     },

@@ -35,6 +35,7 @@ use super::counts::{Counts, PathValue};
 use super::direct::PrevVertex;
 use super::distance::{self, DistanceGuide, GuidedDistances};
 use super::guiding;
+use super::learned_counts::BounceClass;
 use super::march;
 use super::observer::{Observer, PathStep};
 use super::sample::{Contributions, PathSample};
@@ -59,7 +60,8 @@ pub fn trace(
 ) -> PathSample {
     let state = State::new(ray);
     let (table, contributions) = (march::MarchTable::default(), Contributions::default());
-    let mut path = Path { scene, context, state, expected: 0.0, nested: 0, table, contributions };
+    let (expected, nested, branches) = (0.0, 0, 0);
+    let mut path = Path { scene, context, state, expected, nested, branches, table, contributions };
     while path.advance(rng, observer) {}
     path.contributions.finish()
 }
@@ -136,14 +138,15 @@ impl Path<'_> {
         observer: &mut impl Observer,
     ) -> bool {
         let State { ray, throughput, scatters, .. } = self.state;
-        let value =
-            PathValue { throughput, scatters, expected: self.expected, nested: self.nested };
+        let Self { expected, nested, branches, .. } = *self;
+        let value = PathValue { throughput, scatters, expected, nested, branches };
         let strategy = &self.scene.strategy;
         let counts = Counts::at(&self.context, strategy, vertex, ray.direction, value);
         let splitting = counts.splitting(rng);
         self.state.throughput *= splitting.factor;
         for _ in 1..splitting.count {
             self.nested += 1;
+            self.branches += 1;
             self.follow(Branch::Other, rng, observer, |path, rng, observer| {
                 path.scatter(vertex, &counts, rng, observer)
             });
@@ -173,7 +176,8 @@ impl Path<'_> {
             Branch::FirstGuided => rng.enter_vertex_of_branch(self.state.scatters),
             Branch::Other => rng.enter_vertex(u32::MAX),
         }
-        observer.step(PathStep::Vertex { vertex, throughput: self.state.throughput });
+        let class = BounceClass::new(self.state.scatters, vertex.is_surface());
+        observer.step(PathStep::Vertex { vertex, class, throughput: self.state.throughput });
         let (fires, lamps) = self.light_sampling(vertex);
         self.state.throughput_before = mean(self.state.throughput);
         self.state.light_point = None;
@@ -182,9 +186,12 @@ impl Path<'_> {
         if self.contributions.is_cut() {
             return false;
         }
-        let State { scatters, light_point, .. } = self.state;
-        let drawn =
-            guiding::direction(self.scene, &self.context, scatters, vertex, light_point, rng);
+        let (scene, context, scatters) = (self.scene, &self.context, self.state.scatters);
+        if self.state.light_point.is_none() {
+            self.state.light_point = guiding::light_point(scene, context, scatters, vertex, rng);
+        }
+        let light_point = self.state.light_point;
+        let drawn = guiding::direction(scene, context, scatters, vertex, light_point, rng);
         let Some(drawn) = drawn else { return false };
         self.state.throughput *= drawn.weight;
         if vertex.is_broad() {

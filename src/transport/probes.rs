@@ -27,7 +27,7 @@ mod view;
 pub use brightness::Brightness;
 pub(super) use caustic_lobes::CausticLobe;
 pub use distance_pdf::DistancePdf;
-pub(super) use probe::Indirect;
+pub(super) use probe::{Indirect, PathSums};
 pub use probes::Probes;
 pub(super) use probes::Surroundings;
 pub use view::ProbeView;

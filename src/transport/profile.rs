@@ -7,6 +7,7 @@ use super::{
     counts::Allocation,
     direct, distance,
     frame::PreparedFrame,
+    path_setup::Guides,
     probes::{DistancePdf, Probes},
     scene::Scene,
     tracking::{event::EmissionGathering, exp_neg},
@@ -89,16 +90,12 @@ impl Profile {
             .collect();
         let gather = EmissionGathering::of(&scene.strategy);
         let optical_depth = read_medium(medium.clone(), gather, &mut rows, step);
-        let guides = frame.probes.as_deref().filter(|_| scene.strategy.guides());
+        let guides = prepared.guides().filter(|_| scene.strategy.guides());
         let flights_scale = prepared.guided_flights();
-        let guided = guides.is_some_and(|probes| {
+        let guided = guides.is_some_and(|Guides { probes, brightness }| {
             let distance_pdf = probes.along(medium, ray);
-            let allocation = Allocation::new(
-                &scene.strategy,
-                distance_pdf.as_ref(),
-                &frame.brightness,
-                flights_scale,
-            );
+            let allocation =
+                Allocation::new(&scene.strategy, distance_pdf.as_ref(), brightness, flights_scale);
             let lights = match scene.strategy.advanced.equiangular {
                 true => points_of_light(scene, probes, ray, [t0, end]),
                 false => Vec::new(),

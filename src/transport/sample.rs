@@ -3,6 +3,7 @@
 use glam::UVec2;
 
 use super::learned_counts::LearnedCounts;
+use super::path_setup::{PathSetup, Spending};
 use super::tracking::MOST_COLLISIONS;
 use super::tracking::event::{Event, Flight};
 use crate::error::{Progress, Result, report};
@@ -116,24 +117,29 @@ impl Contributions {
 
 /// Result of a picture's pilot pass, which all samples of a pixel but the first depend on. Made by
 /// [`PixelSampler::prepare`].
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Prepared {
-    pub(super) counts: Option<LearnedCounts>,
+    pub(super) setup: Option<PathSetup>,
 }
 
 impl Prepared {
     /// Result for samplers without a pilot pass.
-    pub const NOTHING: Self = Self { counts: None };
+    pub const NOTHING: Self = Self { setup: None };
 
     /// Guided flights of a camera ray, relative to those that the probes propose; 0 where none pay.
     /// `None` where no pilot pass was run.
     pub fn guided_flights(&self) -> Option<f32> {
-        self.counts.map(|counts| counts.guided_flights)
+        self.counts().map(|counts| counts.guided_flights)
+    }
+
+    /// How the time of the picture is spent; `None` where no pilot pass was run.
+    pub fn spending(&self) -> Option<&Spending> {
+        self.setup.as_ref()?.spending.as_ref()
     }
 
     /// Expected counts that the pilot pass learned; `None` where none was run.
     pub fn counts(&self) -> Option<&LearnedCounts> {
-        self.counts.as_ref()
+        self.setup.as_ref().map(|setup| &setup.counts)
     }
 }
 

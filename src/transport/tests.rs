@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use glam::UVec2;
 
+use super::prepare::SceneProbes;
 use super::*;
 use crate::error::{Error, NO_PROGRESS, Progress, Result};
 use crate::scene::{self, Overrides, VolumeCache};
@@ -83,10 +84,15 @@ fn check_giving_up<R: Send>(
 #[test]
 fn setting_up_a_frame_can_be_given_up_anywhere() {
     let scene = Arc::new(Scene::of_text(SCENE));
-    let probes = prepare::probes(&scene, NO_PROGRESS).unwrap().unwrap();
-    let leaves = probes.leaves().len() as u64;
-    check_giving_up("probes", probes.len() as u64 + 8 * leaves + 256 + 16384, 0, |progress| {
-        prepare::probes(&scene, progress)
+    let probes = SceneProbes::placed(&scene, NO_PROGRESS).unwrap().unwrap();
+    let coarse = probes.coarse();
+    let due = coarse.len() - 1 + coarse.leaves().len() + 256 + 4096;
+    check_giving_up("few probes", due as u64, 0, |progress| SceneProbes::placed(&scene, progress));
+    let fine = probes.fine(&scene, NO_PROGRESS).unwrap();
+    let due = fine.len() - 1 + 2 * fine.leaves().len() + 256 + 16384;
+    check_giving_up("all probes", due as u64, 0, |progress| {
+        let probes = SceneProbes::placed(&scene, NO_PROGRESS).unwrap().unwrap();
+        probes.fine(&scene, progress).map(Clone::clone)
     });
     let probes = Some(Arc::new(probes));
     check_giving_up("film", 24 * 24 + 32, 0, |progress| {
@@ -112,11 +118,8 @@ fn what_was_not_given_up_is_the_same() {
     let scene = Arc::new(Scene::of_text(SCENE));
     let frame = |progress| Frame::new(scene.clone(), SIZE, 0, progress).unwrap();
     let (plain, asked) = (frame(NO_PROGRESS), frame(&|_| true));
-    assert_eq!(format!("{:?}", asked.probes), format!("{:?}", plain.probes));
-    assert_eq!(
-        (asked.emission_estimator, asked.brightness),
-        (plain.emission_estimator, plain.brightness)
-    );
+    assert_eq!(format!("{:?}", asked.first), format!("{:?}", plain.first));
+    assert_eq!(asked.emission_estimator, plain.emission_estimator);
     let plain = plain.prepared(NO_PROGRESS).unwrap();
     let asked = asked.prepared(&|_| true).unwrap();
     assert_eq!(asked.counts(), plain.counts());

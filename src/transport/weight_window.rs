@@ -17,6 +17,8 @@ const MOST_SPLITS: f32 = 8.0;
 /// Least survival probability: probes underestimate places that are brighter than their
 /// surroundings.
 const LEAST_SURVIVAL: f32 = 0.3;
+/// Most branches of one sample: where probes misjudge the light, splits beget splits.
+pub(super) const MOST_BRANCHES: u32 = 128;
 /// Most nested splits; each takes space on the stack.
 pub(super) const MOST_NESTED: u32 = 24;
 

@@ -80,7 +80,7 @@ fn gray_media_take_a_shortcut_to_the_same_paths() {
     let text = |albedo: &str| EVERYTHING.replace("albedo = [0.9, 0.8, 0.7]", albedo);
     let scene = |albedo: &str| Arc::new(build(&text(albedo).replace("albedo = 0.3", albedo)));
     // The same for all: what probes learn from paths hangs on last digits as well.
-    let probes = crate::common::probes_of(&scene("albedo = 0.8")).map(Arc::new);
+    let probes = crate::common::placed(&scene("albedo = 0.8"));
     let frame = |albedo: &str| {
         crate::common::prepared(Frame::with_probes(
             scene(albedo),

@@ -21,7 +21,8 @@ use flambeau::{
     render::{Film, estimate::PixelEstimate},
     scene::{self, Overrides, VolumeCache},
     transport::{
-        Frame, PathSample, PreparedFrame, Scene, prepare,
+        Frame, PathSample, PreparedFrame, Scene,
+        prepare::SceneProbes,
         probes::Probes,
         strategy::{
             Advanced, BoostMode, Distance, LightSelection, NeeEvaluation, ScatterProbability,
@@ -349,13 +350,19 @@ pub fn prepared(frame: Frame) -> PreparedFrame {
     frame.prepared(NO_PROGRESS).unwrap()
 }
 
-/// The probes of a scene, if its strategy asks for any.
-pub fn probes_of(scene: &Scene) -> Option<Probes> {
-    prepare::probes(scene, NO_PROGRESS).unwrap()
+/// All probes of a scene, if its strategy asks for any.
+pub fn probes_of(scene: &Scene) -> Option<Arc<Probes>> {
+    let placed = placed(scene)?;
+    Some(placed.fine(scene, NO_PROGRESS).unwrap().clone())
+}
+
+/// The probes of a scene in their two stages, if its strategy asks for any.
+pub fn placed(scene: &Scene) -> Option<Arc<SceneProbes>> {
+    SceneProbes::placed(scene, NO_PROGRESS).unwrap().map(Arc::new)
 }
 
 /// Probes by the scene they were placed in.
-type Placed = Vec<(Scene, Option<Arc<Probes>>)>;
+type Placed = Vec<(Scene, Option<Arc<SceneProbes>>)>;
 
 /// A scene on a square film, its pilot pass run if the strategy learns how often probes guide; all
 /// other counts are those of first samples without it, as what they are changes no picture (see
@@ -368,7 +375,7 @@ pub fn framed(scene: &Scene, side: u32) -> PreparedFrame {
 /// [`framed`] with the random numbers of another seed.
 pub fn framed_by_seed(scene: &Scene, side: u32, number: u64) -> PreparedFrame {
     static PLACED: Mutex<Placed> = Mutex::new(Vec::new());
-    let same = |(other, _): &&(Scene, Option<Arc<Probes>>)| {
+    let same = |(other, _): &&(Scene, Option<Arc<SceneProbes>>)| {
         let [one, two] = [scene, other].map(|scene| scene.world.instances());
         let same_build = std::iter::zip(one, two).all(|(a, b)| Arc::ptr_eq(a.volume(), b.volume()));
         same_build
@@ -377,7 +384,7 @@ pub fn framed_by_seed(scene: &Scene, side: u32, number: u64) -> PreparedFrame {
     };
     let known = PLACED.lock().unwrap().iter().find(same).map(|(_, probes)| probes.clone());
     let probes = known.unwrap_or_else(|| {
-        let probes = probes_of(scene).map(Arc::new);
+        let probes = placed(scene);
         PLACED.lock().unwrap().push((scene.clone(), probes.clone()));
         probes
     });
@@ -385,7 +392,7 @@ pub fn framed_by_seed(scene: &Scene, side: u32, number: u64) -> PreparedFrame {
     let frame = Frame::with_probes(Arc::new(scene.clone()), UVec2::splat(side), seed, probes);
     match scene.strategy().learns_share() {
         true => prepared(frame),
-        false => frame.with_first_counts(),
+        false => frame.with_first_counts(NO_PROGRESS).unwrap(),
     }
 }
 

@@ -131,7 +131,7 @@ fn samples_of(scene: &Scene, strategy: Strategy) -> Vec<PathSample> {
     let mut strategy = strategy;
     strategy.advanced.probe_count = 64;
     let scene = Arc::new(with_strategy(scene, strategy));
-    let probes = common::probes_of(&scene).map(Arc::new);
+    let probes = common::placed(&scene);
     let frame = Frame::with_probes(scene, UVec2::splat(SIDE), common::seed(), probes);
     let frame = common::prepared(frame);
     let pixels = (0..SIDE * SIDE).map(|i| UVec2::new(i % SIDE, i / SIDE));

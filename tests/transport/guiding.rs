@@ -1,5 +1,7 @@
 //! Scattering guided by probes, by equal angles and towards glow: whatever the guide, one picture.
 
+use std::sync::Arc;
+
 use crate::common::{
     CLOSELY, Expected, REFERENCED, Verdicts, asking, build, every_guide, few_guides, full_name,
     half_of_strategies, measure_closely, measure_to, with_strategy,
@@ -200,7 +202,7 @@ fn guides_agree_on_shafts_of_light() {
     guides_agree(text, true, few_guides(), 400_000);
 }
 
-fn probes(text: &str, count: u32) -> (Scene, Option<Probes>) {
+fn probes(text: &str, count: u32) -> (Scene, Option<Arc<Probes>>) {
     let advanced = Advanced { probe_count: count, ..Advanced::default() };
     let scene = with_strategy(&build(text), Strategy { advanced, ..Preset::Full.strategy() });
     let probes = crate::common::probes_of(&scene);

@@ -1,6 +1,8 @@
 //! Lights chosen by what probes have seen of them: a distribution that is what it says it is, that
 //! heeds what hides a light, and that changes no picture.
 
+use std::sync::Arc;
+
 use crate::common::{self, Expected, Verdicts, build, full_name, measure_to, with_strategy};
 use flambeau::{
     light::{By, LightChoice, LightGroup, Receiver},
@@ -92,7 +94,7 @@ fn by(light_selection: LightSelection) -> Strategy {
     Strategy { advanced, ..Strategy::default() }
 }
 
-fn scored(text: &str, strategy: Strategy) -> (Scene, Probes) {
+fn scored(text: &str, strategy: Strategy) -> (Scene, Arc<Probes>) {
     let scene = with_strategy(&build(text), strategy);
     let probes = crate::common::probes_of(&scene).unwrap();
     (scene, probes)

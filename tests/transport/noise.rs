@@ -81,8 +81,7 @@ fn variances(frames: &[PreparedFrame], samples: u32, batch: u32) -> Vec<[f64; 2]
 #[test]
 fn accumulators_tell_the_noise_between_seeds() {
     let scene = build(SCENE);
-    let probes =
-        crate::common::probes_of(&with_strategy(&scene, Strategy::default())).map(Arc::new);
+    let probes = crate::common::placed(&with_strategy(&scene, Strategy::default()));
     let mut noise = Vec::new();
     for (low_discrepancy, samples) in [(true, 13), (true, 32), (false, 32)] {
         let mut strategy = Strategy::default();

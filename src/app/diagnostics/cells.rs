@@ -230,7 +230,7 @@ mod tests {
     use super::*;
     use crate::error::NO_PROGRESS;
     use crate::scene::{Overrides, Settings, VolumeCache, assemble, parse};
-    use crate::transport::prepare;
+    use crate::transport::prepare::SceneProbes;
 
     fn settings() -> Settings {
         parse(TWO, "", Path::new(""), &Overrides::default()).unwrap()
@@ -342,7 +342,8 @@ density = { scale = 0.1 }
             volume.albedo = crate::scene::settings::Albedo::Gray(0.5);
         }
         let scene = assemble(&settings, &VolumeCache::default(), NO_PROGRESS).unwrap();
-        let probes = prepare::probes(&scene, NO_PROGRESS).unwrap().map(Arc::new);
+        let probes =
+            SceneProbes::placed(&scene, NO_PROGRESS).unwrap().map(|probes| probes.coarse().clone());
         let scene = Arc::new(scene);
         let source = CellSource { value: CellValue::Probes, scene, probes };
         let mut volume = 0.0;

@@ -13,7 +13,7 @@ use crate::app::picture::view::View;
 use crate::app::ui::theme::{color, space};
 use crate::app::ui::widgets::significant;
 use crate::error::NO_PROGRESS;
-use crate::transport::probes::Probes;
+use crate::transport::prepare::SceneProbes;
 use crate::transport::profile::{Profile, ProfileRow};
 use crate::transport::{Frame, PreparedFrame, Scene};
 
@@ -30,7 +30,7 @@ const ROW: f32 = 15.0;
 #[derive(Clone)]
 struct RayScene {
     scene: Arc<Scene>,
-    probes: Option<Arc<Probes>>,
+    probes: Option<Arc<SceneProbes>>,
     pixel: UVec2,
     /// Width and height of the picture in pixels.
     size: UVec2,

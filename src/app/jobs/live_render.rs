@@ -16,7 +16,7 @@ use crate::render::{Area, Layer, Picture, Resume, Session};
 use crate::scene::settings::FilmSettings;
 use crate::scene::{Note, Settings, VolumeCache};
 use crate::transport::Scene;
-use crate::transport::probes::Probes;
+use crate::transport::prepare::SceneProbes;
 
 /// Time after which a build gives way to the next edit, and shows its progress.
 const BUILD_PATIENCE: Duration = Duration::from_millis(250);
@@ -195,7 +195,7 @@ impl LiveRender {
     }
 
     /// The probes of the scene that was built last, once they are there.
-    pub fn probes(&self) -> Option<Arc<Probes>> {
+    pub fn probes(&self) -> Option<Arc<SceneProbes>> {
         self.probe_placer.probes(self.built.as_ref()?)
     }
 

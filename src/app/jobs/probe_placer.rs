@@ -13,11 +13,12 @@ use crate::render::pool::{Pool, Priority};
 use crate::render::{Request, Resume, Session};
 use crate::scene::Settings;
 use crate::scene::settings::CameraSettings;
+use crate::transport::prepare::SceneProbes;
 use crate::transport::probes::Probes;
-use crate::transport::{Frame, PixelSampler, Scene, prepare};
+use crate::transport::{Frame, PixelSampler, Scene};
 
 /// Places the probes of a scene unless they are given up on the way.
-type PlaceProbes = dyn Fn(&Scene, Progress) -> Result<Option<Probes>> + Send + Sync;
+type PlaceProbes = dyn Fn(&Scene, Progress) -> Result<Option<SceneProbes>> + Send + Sync;
 
 /// The handle of the thread. Dropping it stops what is being placed and ends the thread.
 pub struct ProbePlacer {
@@ -42,7 +43,7 @@ struct PlaceRequest {
 #[derive(Default)]
 struct PlacerState {
     /// The probes placed last, and the scene that they were placed in.
-    ready: Option<(BuiltScene, Option<Arc<Probes>>)>,
+    ready: Option<(BuiltScene, Option<Arc<SceneProbes>>)>,
     /// The render that awaits its probes.
     waiting: Option<(BuiltScene, RenderStart)>,
 }
@@ -56,7 +57,7 @@ impl ProbePlacer {
     pub fn new(session: Arc<Session>, threads: Option<usize>) -> Result<Self> {
         let pool = Pool::new(threads, Priority::Background)?;
         let place = move |scene: &Scene, progress: Progress| {
-            pool.install(|| prepare::probes(scene, progress))
+            pool.install(|| SceneProbes::placed(scene, progress))
         };
         Self::with(session, place)
     }
@@ -64,7 +65,7 @@ impl ProbePlacer {
     /// A placer that places probes by `place`.
     fn with(
         session: Arc<Session>,
-        place: impl Fn(&Scene, Progress) -> Result<Option<Probes>> + Send + Sync + 'static,
+        place: impl Fn(&Scene, Progress) -> Result<Option<SceneProbes>> + Send + Sync + 'static,
     ) -> Result<Self> {
         let shared = Arc::new(Shared {
             state: Mutex::default(),
@@ -102,7 +103,7 @@ impl ProbePlacer {
     }
 
     /// The probes of `built`, if they are there.
-    pub fn probes(&self, built: &BuiltScene) -> Option<Arc<Probes>> {
+    pub fn probes(&self, built: &BuiltScene) -> Option<Arc<SceneProbes>> {
         let state = self.shared.state();
         let (source, probes) = state.ready.as_ref()?;
         probes.clone().filter(|_| same(source, built))
@@ -132,7 +133,7 @@ impl Shared {
         &self,
         built: BuiltScene,
         generation: u64,
-        probes: Option<&Arc<Probes>>,
+        probes: Option<&Arc<SceneProbes>>,
     ) -> Option<(BuiltScene, RenderStart)> {
         let mut state = self.state();
         if self.generation.load(Ordering::Relaxed) != generation {
@@ -146,7 +147,7 @@ impl Shared {
 impl PlacerState {
     /// The probes of `built` as far as known: `None` if they have to be placed first. Lets go of
     /// those that no strategy of the same scene could use.
-    fn known(&mut self, built: &BuiltScene) -> Option<Option<Arc<Probes>>> {
+    fn known(&mut self, built: &BuiltScene) -> Option<Option<Arc<SceneProbes>>> {
         self.ready = self.ready.take().filter(|(source, _)| same_places(source, built));
         if Probes::recipe(built.scene.strategy()).is_none() {
             return Some(None);
@@ -176,7 +177,7 @@ fn work(shared: &Shared, session: &Session, place: &PlaceProbes) {
 fn sampler(
     built: &BuiltScene,
     start: RenderStart,
-    probes: Option<Arc<Probes>>,
+    probes: Option<Arc<SceneProbes>>,
 ) -> Arc<dyn PixelSampler> {
     let seed = built.settings.film.seed;
     Arc::new(Frame::with_probes(built.scene.clone(), start.size, seed, probes))
@@ -186,7 +187,7 @@ fn sampler(
 fn request(
     built: &BuiltScene,
     start: RenderStart,
-    probes: Option<Arc<Probes>>,
+    probes: Option<Arc<SceneProbes>>,
     provisional: bool,
 ) -> Request {
     let RenderStart { size, generation } = start;

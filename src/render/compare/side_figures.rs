@@ -1,5 +1,7 @@
 //! Figures of one side of a comparison.
 
+use crate::transport::path_setup::Spending;
+
 /// Figures of one side. Colors are linear; gray is (R + G + B) / 3; means run over the pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SideFigures {
@@ -18,6 +20,8 @@ pub struct SideFigures {
     /// Relative standard error of the picture, as
     /// [`FilmStats::noise`](crate::render::FilmStats::noise).
     pub noise: Option<f64>,
+    /// How the time is spent, where that was counted.
+    pub spending: Option<Spending>,
 }
 
 impl SideFigures {

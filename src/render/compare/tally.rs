@@ -158,6 +158,7 @@ impl Tally {
             variance_of_mean: variance,
             variance_error: mean_of(self.uncertainty.max(0.0).sqrt(), self.measured),
             noise: variance.zip(mean).map(|(variance, mean)| variance.sqrt() / mean),
+            spending: None,
         }
     }
 }

@@ -15,6 +15,8 @@ pub(super) struct Path<'s> {
     pub(super) expected: f32,
     /// Splits whose branches are being followed.
     pub(super) nested: u32,
+    /// Branches so far.
+    pub(super) branches: u32,
     /// Table of steps of the present ray, for ray marching.
     pub(super) table: MarchTable,
     pub(super) contributions: Contributions,

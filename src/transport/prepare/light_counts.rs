@@ -32,7 +32,7 @@ const MOST_PIXELS: u32 = 1 << 13;
 const GROUPS: usize = 8;
 /// Counts for each unit of throughput that are compared. Rarer samples would save little more, and
 /// bring more rare bright ones, which so few paths know nothing of.
-const TRIED: [f32; 7] = [0.125, 0.25, 0.5, 1.0, 2.0, 4.0, f32::INFINITY];
+const TRIED: [f32; 8] = [0.0, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, f32::INFINITY];
 /// Fewest light samples of lamps, and emission walks, for each unit of throughput: near to small
 /// lamps and inside of fires the other technique has rare bright finds.
 const FEWEST: f32 = 0.25;
@@ -41,23 +41,29 @@ const LEAST_LEFT: f64 = 0.1;
 /// Factor by which a change of a count must lower variance times cost. Samples that are spread
 /// evenly have less variance than the independent ones of the pilot, so that rounding adds more.
 const GAIN: f64 = 0.95;
+/// Largest factor of a contribution by other counts: none of them would find it.
+const LARGEST: f64 = 1e6;
+/// Cost of an emission walk whose emission is not weighted against light samples, relative to one
+/// whose is.
+const UNWEIGHTED: f64 = 0.6;
 /// Rounds of improving one count after the other.
 const ROUNDS: u32 = 2;
 
 /// The counts of `context` with the light samples and emission walks that have the least variance
-/// times cost.
+/// times cost, whatever `context` has of them.
 pub(super) fn learn(
     scene: &Scene,
     size: UVec2,
     context: PathContext<'_>,
     progress: Progress,
 ) -> Result<LearnedCounts> {
-    let mut best = *context.counts;
+    let mut best = context.counts.with_one_of_each();
     let knobs = knobs(scene);
     if knobs.is_empty() {
         return Ok(best);
     }
-    let mut groups = measure(scene, size, context, progress)?;
+    let counts = best;
+    let mut groups = measure(scene, size, context.with_counts(&counts), progress)?;
     for _ in 0..ROUNDS {
         for &(class, technique) in &knobs {
             improve(&mut groups, &mut best, class, technique);
@@ -75,7 +81,8 @@ fn improve(groups: &mut [Group], best: &mut LearnedCounts, class: BounceClass, k
             continue;
         }
         let mut other = *rules;
-        *kind.rule(&mut other) = CountRule { per_throughput, most: 1.0 };
+        let most = if per_throughput > 0.0 { 1.0 } else { 0.0 };
+        *kind.rule(&mut other) = CountRule { per_throughput, most };
         let product = objective(groups, class, &other);
         if product < least {
             (least, *rules) = (product, other);
@@ -161,9 +168,16 @@ impl Record {
         let dot = |c: [f32; 2]| {
             f64::from(c[0]) * f64::from(pdfs[0]) + f64::from(c[1]) * f64::from(pdfs[1])
         };
-        let ratio = f64::from(n[0] / m[0]);
-        let value = self.contribution * ratio.sqrt() * (dot(m) / dot(n));
-        (if value.is_finite() { value } else { 0.0 }, ratio * self.cost)
+        // Finds of both techniques tell of both: light that rays alone would rarely meet shows in
+        // the finds of light samples.
+        let value = match self.contribution == 0.0 {
+            true => 0.0,
+            false => self.contribution * (dot(m) / dot(n)).sqrt().min(LARGEST),
+        };
+        // Without light samples, emission needs no MIS weight.
+        let alone = self.kind == Kind::EmissionWalk && n[1] == 0.0;
+        let cost = self.cost * if alone { UNWEIGHTED } else { 1.0 };
+        (value, f64::from(n[0] / m[0]) * cost)
     }
 }
 

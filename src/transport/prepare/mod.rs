@@ -10,13 +10,17 @@ mod learning;
 mod light_counts;
 mod optimal_majorant;
 pub(super) mod pilot;
+pub(super) mod pilot_film;
 mod pilot_pixel;
+mod scene_probes;
+mod spending;
 mod trial;
+
+pub use scene_probes::SceneProbes;
 
 use glam::UVec2;
 
 use super::emission::EmissionEstimator;
-use super::probes::Probes;
 use super::scene::Scene;
 use crate::error::{Progress, Result};
 
@@ -32,23 +36,4 @@ pub(super) fn emission_estimator(
         false => 0.0,
     };
     Ok(EmissionEstimator::new(&scene.strategy, fitted))
-}
-
-/// The probes for `scene`, if its strategy asks for any and anything scatters. The same scene
-/// always gets the same ones. `progress` is called after every few paths, from many threads at
-/// once.
-///
-/// # Errors
-/// [`Error::Cancelled`](crate::error::Error::Cancelled) where `progress` says so.
-pub fn probes(scene: &Scene, progress: Progress) -> Result<Option<Probes>> {
-    let Some(mut probes) = Probes::placed(scene, progress)? else { return Ok(None) };
-    let (guides, advanced) = (scene.strategy.guides(), &scene.strategy.advanced);
-    if advanced.guide_caustics && guides {
-        probes.find_caustics(scene, progress)?;
-    }
-    if advanced.probe_learning && guides {
-        let learned = learning::indirect_light(&probes, scene, progress)?;
-        probes.learn(&learned);
-    }
-    Ok(Some(probes))
 }

@@ -7,36 +7,52 @@
 //! emission walks and transmittances. So the pilot pass tries a few scales of the number of guided
 //! flights on some pixels, each with every way to gather the light at the end of rays, and takes
 //! the one with the least variance times cost. Before and after that it learns the counts of the
-//! rest.
+//! rest. Only where a short trial with few probes promises something are all of them placed.
 //!
 //! Costs are counted, not timed, and the random numbers are none of the picture's, so that the same
 //! scene on the same film always gets the same counts. The picture is unbiased with any of them.
 
-use glam::UVec2;
+use rayon::prelude::*;
 
+use super::SceneProbes;
 use super::light_counts;
+use super::pilot_film::PilotFilm;
+use super::pilot_pixel::{LEAST_BUDGET, budget};
+use super::spending;
 use super::trial::{RayEnds, Trial};
 use crate::error::{Progress, Result};
 use crate::transport::context::PathContext;
 use crate::transport::learned_counts::LearnedCounts;
+use crate::transport::path_setup::{Guides, PathSetup};
 use crate::transport::scene::Scene;
-use crate::transport::strategy::{RayEnd, Strategy};
+use crate::transport::strategy::{LightSelection, RayEnd, Strategy};
 
-/// Scales that the pilot pass tries, relative to the number of flights that the probes propose.
-const TRIED: [f32; 4] = [0.0, 0.06, 0.25, 1.0];
-/// The scale that first samples use, which do not wait for the pilot pass.
-const FIRST_SCALE: f32 = 0.25;
-/// Factor by which guided flights must lower variance times cost against none, which the pilot pass
+/// Guidance of paths that the pilot pass tries: the scale of the number of guided flights, relative
+/// to the number that the probes propose, and whether directions are guided.
+type Guidance = (f32, bool);
+
+const UNGUIDED: Guidance = (0.0, false);
+/// Caustics alone.
+const DIRECTIONS: Guidance = (0.0, true);
+/// Guidance of first samples, which do not wait for the pilot pass, if any.
+const FIRST: Guidance = (0.25, true);
+const TRIED: [Guidance; 3] = [(0.06, true), FIRST, (1.0, true)];
+/// Trials with few probes that show whether all of them are placed: the part of the cost of a trial
+/// with all, and the factor of variance times cost, against none, below which they go on.
+const PROMISING: [(f64, f64); 2] = [(0.25, 1.5), (1.0, 0.9)];
+/// Factor by which guidance must lower variance times cost against none, which the pilot pass
 /// measures to a fifth.
 const MARGIN: f64 = 0.8;
+/// Factor by which no guidance, or another way to gather the light at the end of rays, must lower
+/// variance times cost in a very short trial for first samples.
+const MARGIN_OF_FIRST: f64 = 0.33;
 /// Factor by which another way to gather the light at the end of rays must lower variance times
 /// cost against the first.
 const MARGIN_OF_ENDS: f64 = 0.95;
 
-/// The counts of first samples; `guides` says whether probes guide distances.
-pub(in crate::transport) fn first(strategy: &Strategy, guides: bool) -> LearnedCounts {
-    let scale = if guides && strategy.learns_share() { FIRST_SCALE } else { 1.0 };
-    let counts = LearnedCounts::first(scale);
+/// The counts of a strategy for which nothing is learned.
+pub(in crate::transport) fn unlearned(strategy: &Strategy) -> LearnedCounts {
+    let counts = LearnedCounts::first(1.0);
     match strategy.advanced.ray_end {
         RayEnd::Transmittance => counts.with_all_by_transmittance(1.0),
         RayEnd::Arrival => counts.with_all_by_transmittance(0.0),
@@ -46,37 +62,107 @@ pub(in crate::transport) fn first(strategy: &Strategy, guides: bool) -> LearnedC
     }
 }
 
-/// The counts with the least variance times cost for `scene` on a film of `size`; `context` is that
-/// of first samples.
+/// The setup of first samples: few probes, and what a very short trial finds best.
+///
+/// # Errors
+/// [`Error::Cancelled`](crate::error::Error::Cancelled) where `progress` says so.
+pub(in crate::transport) fn first(
+    film: PilotFilm<'_>,
+    probes: Option<&SceneProbes>,
+    progress: Progress,
+) -> Result<PathSetup> {
+    let PilotFilm { scene, size, emission_estimator } = film;
+    let guides = match probes {
+        Some(probes) => Some(Guides::new(probes.coarse(), scene, size, progress)?),
+        None => None,
+    };
+    let counts = unlearned(&scene.strategy);
+    let mut setup = PathSetup { guides, counts, spending: None };
+    let learns_guidance = learns_guidance(scene, probes);
+    if size.min_element() == 0 || !(learns_guidance || learns_ends(scene)) {
+        return Ok(setup);
+    }
+    let tried = if learns_guidance { &[FIRST, UNGUIDED][..] } else { &[(1.0, true)] };
+    let context = setup.context(emission_estimator);
+    let trials = trials(film, context, tried, LEAST_BUDGET, progress)?;
+    let margins = [MARGIN_OF_FIRST; 2];
+    setup.counts = best(&trials, setup.counts, (tried, margins), learns_ends(scene));
+    Ok(setup)
+}
+
+/// The setup with the least variance times cost, for all samples but those of `first`, which is the
+/// setup of first samples.
 ///
 /// # Errors
 /// [`Error::Cancelled`](crate::error::Error::Cancelled) where `progress` says so.
 pub(in crate::transport) fn learn(
-    scene: &Scene,
-    size: UVec2,
-    context: PathContext<'_>,
+    film: PilotFilm<'_>,
+    first: &PathSetup,
+    probes: Option<&SceneProbes>,
     progress: Progress,
-) -> Result<LearnedCounts> {
-    let first = *context.counts;
+) -> Result<PathSetup> {
+    let PilotFilm { scene, size, emission_estimator } = film;
     if size.min_element() == 0 {
-        return Ok(first);
+        return Ok(first.clone());
     }
-    let learns_flights = scene.strategy.learns_share() && context.probes.is_some();
-    // Without guided flights first, since the price of paths decides how many of them pay.
-    let without = if learns_flights { 0.0 } else { first.guided_flights };
-    let first = first.with_guided_flights(without);
-    let first = light_counts::learn(scene, size, context.with_counts(&first), progress)?;
-    let learns_ends = learns_ends(scene);
-    if !learns_flights && !learns_ends {
-        return Ok(first);
+    let mut setup = first.clone();
+    let learns_guidance = learns_guidance(scene, probes);
+    if learns_guidance {
+        // Without guidance first, since the price of paths decides how much of it pays.
+        setup.counts = with(&setup.counts, UNGUIDED);
+    } else if let Some(probes) = probes {
+        setup.guides = Some(film.guides(probes, progress)?);
     }
-    let scales = if learns_flights { &TRIED[..] } else { &[without] };
-    let trials = trials(scene, size, context.with_counts(&first), scales, progress)?;
-    let counts = best(&trials, first, scales, learns_ends);
-    if counts.guided_flights == without {
-        return Ok(counts);
+    let context = setup.context(emission_estimator);
+    setup.counts = light_counts::learn(scene, size, context, progress)?;
+    let mut tried = vec![if learns_guidance { UNGUIDED } else { (1.0, true) }];
+    if let Some(probes) = probes.filter(|_| learns_guidance) {
+        tried.extend(promising(film, &setup, progress)?);
+        if tried.len() > 1 {
+            setup.guides = Some(film.guides(probes, progress)?);
+        }
     }
-    light_counts::learn(scene, size, context.with_counts(&counts), progress)
+    if tried.len() > 1 || learns_ends(scene) {
+        let context = setup.context(emission_estimator);
+        let trials = trials(film, context, &tried, budget(size), progress)?;
+        let margins = [MARGIN, MARGIN_OF_ENDS];
+        setup.counts = best(&trials, setup.counts, (&tried, margins), learns_ends(scene));
+    }
+    if learns_guidance && setup.counts.guided_directions {
+        let context = setup.context(emission_estimator);
+        setup.counts = light_counts::learn(scene, size, context, progress)?;
+    } else if learns_guidance && scene.strategy.advanced.light_selection != LightSelection::Probes {
+        setup.guides = None;
+    }
+    setup.spending = Some(spending::measure(film, &setup, progress)?);
+    Ok(setup)
+}
+
+/// Guidance that is worth a trial with all probes, by trials with the few of `setup`: a short one,
+/// then one that knows better.
+fn promising(film: PilotFilm<'_>, setup: &PathSetup, progress: Progress) -> Result<Vec<Guidance>> {
+    let has_caustics = setup.guides.as_ref().is_some_and(|g| g.probes.has_caustics());
+    let directions = has_caustics.then_some(DIRECTIONS);
+    let tried: Vec<Guidance> = [UNGUIDED, FIRST].into_iter().chain(directions).collect();
+    let context = setup.context(film.emission_estimator);
+    for (part, factor) in PROMISING {
+        let trials = trials(film, context, &tried, part * budget(film.size), progress)?;
+        let product = |trial: &Trial| trial.least(learns_ends(film.scene), &setup.counts);
+        let least = trials[1..].iter().map(product).fold(f64::INFINITY, f64::min);
+        if least >= factor * product(&trials[0]) {
+            return Ok(Vec::new());
+        }
+    }
+    Ok(directions.into_iter().chain(TRIED).collect())
+}
+
+/// Whether there is a choice how much the paths are guided.
+fn learns_guidance(scene: &Scene, probes: Option<&SceneProbes>) -> bool {
+    probes.is_some() && scene.strategy.guides() && scene.strategy.learns_share()
+}
+
+fn with(counts: &LearnedCounts, (flights, directions): Guidance) -> LearnedCounts {
+    counts.with_guidance(flights, directions)
 }
 
 /// Whether there is a choice how the light at the end of rays is gathered.
@@ -89,54 +175,46 @@ fn learns_ends(scene: &Scene) -> bool {
     shines && asks && strategy.gathers_whole_rays() && !strategy.marches()
 }
 
-/// Trials of several scales of guided flights, side by side.
+/// Trials of several kinds of guidance, each of the given cost.
 fn trials(
-    scene: &Scene,
-    size: UVec2,
+    film: PilotFilm<'_>,
     context: PathContext<'_>,
-    scales: &[f32],
+    tried: &[Guidance],
+    budget: f64,
     progress: Progress,
 ) -> Result<Vec<Trial>> {
-    let trial = |guided_flights: f32| {
-        let counts = context.counts.with_guided_flights(guided_flights);
-        Trial::new(scene, size, context.with_counts(&counts), progress)
+    let trial = |&guidance: &Guidance| {
+        let counts = with(context.counts, guidance);
+        Trial::new(film, context.with_counts(&counts), budget, progress)
     };
-    let trial = &trial;
-    let mut trials: Vec<Option<Result<Trial>>> = scales.iter().map(|_| None).collect();
-    // Threads of their own: a worker that waits here for others might take up a sample meanwhile
-    // that waits for this.
-    std::thread::scope(|scope| {
-        for (done, &scale) in trials.iter_mut().zip(scales) {
-            let work = move || *done = Some(trial(scale));
-            // Where the system refuses a thread, this one does the work below.
-            let _ = std::thread::Builder::new().name("pilot".to_owned()).spawn_scoped(scope, work);
-        }
-    });
-    let done = trials.into_iter().zip(scales);
-    done.map(|(done, &scale)| done.unwrap_or_else(|| trial(scale))).collect()
+    let trials: Result<Vec<Trial>> = tried.par_iter().map(trial).collect();
+    let mut trials = trials?;
+    Trial::heed_missed_light(&mut trials);
+    Ok(trials)
 }
 
-/// The counts of the trial with the least variance times cost: without guided flights, and with the
-/// first way to gather the light at the end of rays, unless another one is clearly better.
+/// The counts of the trial with the least variance times cost: those of the first of `tried`, and
+/// with the first way to gather the light at the end of rays, unless another one is better by its
+/// margin.
 fn best(
     trials: &[Trial],
     first: LearnedCounts,
-    scales: &[f32],
+    (tried, [margin, margin_of_ends]): (&[Guidance], [f64; 2]),
     learns_ends: bool,
 ) -> LearnedCounts {
     // In a fire that hardly scatters, direct emission is most of the noise, and no scale lowers it.
     let emission = trials.iter().map(|trial| trial.emission).sum::<f64>() / trials.len() as f64;
     let usual = RayEnds::of(&first);
     let (mut least, mut best) = (f64::INFINITY, first);
-    for (&guided_flights, trial) in scales.iter().zip(trials) {
+    for (index, (&guidance, trial)) in tried.iter().zip(trials).enumerate() {
         for ends in RayEnds::all().filter(|&ends| learns_ends || ends == usual) {
-            let margin = if guided_flights > 0.0 || scales.len() == 1 { 1.0 } else { MARGIN };
-            let margin_of_ends = if ends == usual { MARGIN_OF_ENDS } else { 1.0 };
+            let margin = if index == 0 { margin } else { 1.0 };
+            let of_ends = if ends == usual { margin_of_ends } else { 1.0 };
             let (variance, cost) = trial.of(ends);
-            let product = (variance + emission) * cost * margin * margin_of_ends;
+            let product = (variance + emission) * cost * margin * of_ends;
             if product < least {
                 least = product;
-                best = ends.applied(first.with_guided_flights(guided_flights));
+                best = ends.applied(with(&first, guidance));
             }
         }
     }
@@ -146,6 +224,8 @@ fn best(
 #[cfg(test)]
 mod tests {
     use std::sync::Arc;
+
+    use glam::UVec2;
 
     use super::*;
     use crate::error::NO_PROGRESS;
@@ -202,28 +282,53 @@ mod tests {
 
     fn trial(variance: f64, cost: f64) -> Trial {
         let all = |value| [value; RayEnds::COUNT];
-        Trial { variance: all(variance), emission: 1.0, cost: all(cost) }
+        let light = [1.0, variance];
+        let doubt = all(0.0);
+        Trial {
+            variance: all(variance),
+            doubt,
+            emission: 1.0,
+            cost: all(cost),
+            light,
+            pixels: 100.0,
+        }
     }
 
-    /// Each scale is selected where it has the least variance times cost.
+    /// Each guidance is selected where it has the least variance times cost.
     #[test]
     fn the_least_variance_times_cost_is_best() {
-        for (variances, costs, scale) in [
-            ([1.0, 1.0, 1.0, 1.0], [1.0, 2.0, 3.0, 4.0], 0.0),
-            ([9.0, 1.0, 0.9, 0.8], [1.0, 2.0, 3.0, 4.0], 0.06),
-            ([9.0, 9.0, 1.0, 0.9], [1.0, 2.0, 3.0, 4.0], 0.25),
-            ([99.0, 50.0, 20.0, 1.0], [1.0, 2.0, 3.0, 4.0], 1.0),
+        let tried = [UNGUIDED, TRIED[0], TRIED[1], TRIED[2]];
+        for (variances, costs, chosen) in [
+            ([1.0, 1.0, 1.0, 1.0], [1.0, 2.0, 3.0, 4.0], 0),
+            ([9.0, 1.0, 0.9, 0.8], [1.0, 2.0, 3.0, 4.0], 1),
+            ([9.0, 9.0, 1.0, 0.9], [1.0, 2.0, 3.0, 4.0], 2),
+            ([99.0, 50.0, 20.0, 1.0], [1.0, 2.0, 3.0, 4.0], 3),
             // Variance that no scale lowers makes the cheapest share best.
-            ([0.3, 0.2, 0.1, 0.0], [1.0, 2.0, 3.0, 4.0], 0.0),
+            ([0.3, 0.2, 0.1, 0.0], [1.0, 2.0, 3.0, 4.0], 0),
             // Hardly better than none is not clearly better.
-            ([1.0, 0.9, 2.0, 2.0], [1.0, 1.0, 1.0, 1.0], 0.0),
-            ([1.0, 0.2, 2.0, 2.0], [1.0, 1.0, 1.0, 1.0], 0.06),
-            ([f64::NAN; 4], [1.0; 4], FIRST_SCALE),
+            ([1.0, 0.9, 2.0, 2.0], [1.0, 1.0, 1.0, 1.0], 0),
+            ([1.0, 0.2, 2.0, 2.0], [1.0, 1.0, 1.0, 1.0], 1),
+            ([f64::NAN; 4], [1.0; 4], 2),
         ] {
             let trials: Vec<Trial> = (0..4).map(|i| trial(variances[i], costs[i])).collect();
-            let first = LearnedCounts::first(FIRST_SCALE);
-            let best = best(&trials, first, &TRIED, true);
-            assert_eq!(best.guided_flights, scale, "{variances:?}");
+            let first = with(&LearnedCounts::first(1.0), FIRST);
+            let best = best(&trials, first, (&tried, [MARGIN, MARGIN_OF_ENDS]), true);
+            let guidance = (best.guided_flights, best.guided_directions);
+            assert_eq!(guidance, tried[chosen], "{variances:?}");
+        }
+    }
+
+    /// A trial that misses light which another one has found is no less noisy for that.
+    #[test]
+    fn light_that_a_trial_misses_is_noise() {
+        let found = Trial { light: [1.0, 0.5], ..trial(0.5, 1.0) };
+        for (mean, raised) in [(0.2, true), (0.95, false), (1.0, false)] {
+            let missed = Trial { light: [mean, 0.0], ..trial(0.0, 1.0) };
+            let mut trials = [missed, found.clone()];
+            Trial::heed_missed_light(&mut trials);
+            let variance = trials[0].variance[0];
+            assert_eq!(variance > 100.0 * 0.6 * 0.6, raised, "{mean}: {variance}");
+            assert_eq!(trials[1].variance, found.variance, "{mean}");
         }
     }
 
@@ -235,14 +340,19 @@ mod tests {
         let usual = RayEnds::of(&first);
         let other = RayEnds::all().nth(RayEnds::COUNT - 1).unwrap();
         assert_ne!(usual, other);
-        for (factor, learns, ends) in
-            [(0.5, true, other), (0.97, true, usual), (1.5, true, usual), (0.5, false, usual)]
-        {
+        for (factor, doubt, learns, ends) in [
+            (0.5, 0.0, true, other),
+            (0.5, 0.3, true, usual),
+            (0.97, 0.0, true, usual),
+            (1.5, 0.0, true, usual),
+            (0.5, 0.0, false, usual),
+        ] {
             let mut trial = trial(1.0, 1.0);
+            trial.doubt[RayEnds::COUNT - 1] = doubt;
             trial.variance[RayEnds::COUNT - 1] = factor;
             trial.emission = 0.0;
-            let best = best(&[trial], first, &[1.0], learns);
-            assert_eq!(RayEnds::of(&best), ends, "{factor} {learns}");
+            let best = best(&[trial], first, (&[FIRST], [MARGIN, MARGIN_OF_ENDS]), learns);
+            assert_eq!(RayEnds::of(&best), ends, "{factor} {doubt} {learns}");
         }
     }
 

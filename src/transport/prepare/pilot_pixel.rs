@@ -18,13 +18,15 @@ const SEED: u64 = 0x6f70_7469_6d61_6c21;
 /// Cost that one set of pilot paths is worth for each pixel of the film, in tracking steps of one of
 /// two paths at each pilot pixel: about as much as an eighth of a sample.
 const BUDGET_PER_PIXEL: f64 = 16.0;
-/// Least and most cost of a set of pilot paths.
-const BUDGET: [f64; 2] = [16_384.0, 262_144.0];
+/// Least cost of a set of pilot paths.
+pub(in crate::transport) const LEAST_BUDGET: f64 = 16_384.0;
+/// Most cost of a set of pilot paths.
+const MOST_BUDGET: f64 = 262_144.0;
 
 /// Cost that one set of pilot paths may take for a film of `size`.
 pub(in crate::transport) fn budget(size: UVec2) -> f64 {
     let pixels = f64::from(size.x) * f64::from(size.y);
-    (BUDGET_PER_PIXEL * pixels).clamp(BUDGET[0], BUDGET[1])
+    (BUDGET_PER_PIXEL * pixels).clamp(LEAST_BUDGET, MOST_BUDGET)
 }
 
 /// A pixel and two rays through it.

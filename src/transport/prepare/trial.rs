@@ -6,10 +6,9 @@
 //! gathers half of it in each way, and one set of paths serves all choices: their comparison has
 //! the noise of the light at the ends alone.
 
-use glam::UVec2;
-
 use super::cost::Cost;
-use super::pilot_pixel::{PilotPixel, budget, half_square};
+use super::pilot_film::PilotFilm;
+use super::pilot_pixel::{PilotPixel, half_square};
 use crate::error::{Progress, Result, report};
 use crate::math::{Rgb, mean};
 use crate::transport::context::PathContext;
@@ -22,6 +21,11 @@ use crate::transport::scene::Scene;
 const MOST_PIXELS: u32 = 1 << 14;
 /// Cost of reading the probes along a ray, in tracking steps. Measured as the rest is.
 const GUIDE_COST: f64 = 26.0;
+/// Standard errors by which another way to gather the light at the end of rays must be better: the
+/// best of so many looks better than it is.
+const DOUBT: f64 = 2.0;
+/// Fewest pixels of a trial, relative to those of the trial with the most.
+const FEWEST_PIXELS: f64 = 1.0 / 16.0;
 /// Share of the light at the end of rays that a trial gathers in each way.
 const HALF: f32 = 0.5;
 
@@ -64,26 +68,42 @@ impl RayEnds {
 pub(super) struct Trial {
     /// Mean over the pixels of the variance of all light but the emission that is seen directly.
     pub(super) variance: [f64; RayEnds::COUNT],
+    /// Standard error of the difference to the variance of the first choice.
+    pub(super) doubt: [f64; RayEnds::COUNT],
     /// Mean over the pixels of the variance of the emission that is seen directly.
     pub(super) emission: f64,
     /// Mean cost of a sample, in steps.
     pub(super) cost: [f64; RayEnds::COUNT],
+    /// Mean over the pixels of all light but the emission that is seen directly, and its variance
+    /// as it was gathered.
+    pub(super) light: [f64; 2],
+    /// Pixels, each of which had two paths.
+    pub(super) pixels: f64,
 }
 
 impl Trial {
-    /// Measures the counts of `context` with every choice of ray ends.
+    /// Measures the counts of `context` with every choice of ray ends, by paths of the cost `budget`.
     pub(super) fn new(
-        scene: &Scene,
-        size: UVec2,
+        film: PilotFilm<'_>,
         context: PathContext<'_>,
+        budget: f64,
         progress: Progress,
     ) -> Result<Self> {
+        let PilotFilm { scene, size, .. } = film;
         let guides = context.counts.guided_flights > 0.0;
+        let usual = RayEnds::of(context.counts);
         let counts = context.counts.with_all_by_transmittance(HALF);
         let context = context.with_counts(&counts);
         let none = [0.0; RayEnds::COUNT];
-        let mut trial = Self { variance: none, emission: 0.0, cost: none };
-        let (budget, mut pixels, mut spent) = (budget(size), 0, 0.0);
+        let mut trial = Self {
+            variance: none,
+            doubt: none,
+            emission: 0.0,
+            cost: none,
+            light: [0.0; 2],
+            pixels: 0.0,
+        };
+        let (mut pixels, mut spent) = (0, 0.0);
         while spent < budget && pixels < MOST_PIXELS {
             report(progress, (spent / budget) as f32)?;
             let pixel = PilotPixel::new(scene, size, pixels);
@@ -94,33 +114,88 @@ impl Trial {
                 spent += 0.5 * (ends.cost.of(&sample) + guide_cost);
                 (sample, ends)
             });
-            trial.add(&paths, guide_cost);
+            trial.add(&paths, usual, guide_cost);
             pixels += 1;
         }
+        trial.pixels = f64::from(pixels);
         Ok(trial.over(f64::from(pixels)))
     }
 
-    /// Variance, without that of the emission that is seen directly, and cost of a choice.
+    /// Variance, without that of the emission that is seen directly, and cost of a choice; of any
+    /// but the first choice the most that the variance may well be.
     pub(super) fn of(&self, ends: RayEnds) -> (f64, f64) {
-        (self.variance[ends.0 as usize], self.cost[ends.0 as usize])
+        let index = ends.0 as usize;
+        (self.variance[index] + DOUBT * self.doubt[index], self.cost[index])
     }
 
-    fn add(&mut self, paths: &[(PathSample, EndObserver<'_>); 2], guide_cost: f64) {
+    /// Raises the variance of each trial that missed light which another one found, or whose paths
+    /// cost so much that it has far fewer pixels than another one and tells nothing.
+    ///
+    /// Light that none of n paths found comes by paths rarer than 1/n: where it adds Δ to the mean,
+    /// it adds Δ² n to the variance at least, which the trial could not see.
+    pub(super) fn heed_missed_light(trials: &mut [Self]) {
+        let proven = trials.iter().map(Self::least_mean).fold(0.0, f64::max);
+        let most = trials.iter().map(|trial| trial.pixels).fold(0.0, f64::max);
+        for trial in trials {
+            if trial.pixels < FEWEST_PIXELS * most {
+                trial.variance.fill(f64::INFINITY);
+            }
+            let missed = (proven - trial.light[0]).max(0.0);
+            let least = 2.0 * trial.pixels * missed * missed;
+            trial.variance.iter_mut().for_each(|variance| *variance = variance.max(least));
+        }
+    }
+
+    /// The mean less twice its standard error.
+    fn least_mean(&self) -> f64 {
+        let [mean, variance] = self.light;
+        let least = mean - 2.0 * (variance / (2.0 * self.pixels)).sqrt();
+        if least.is_finite() { least } else { 0.0 }
+    }
+
+    /// Least variance times cost of all choices if there is one, else of that of `counts`.
+    pub(super) fn least(&self, has_choice: bool, counts: &LearnedCounts) -> f64 {
+        let usual = RayEnds::of(counts);
+        let choices = RayEnds::all().filter(|&ends| has_choice || ends == usual);
+        let product = |ends| {
+            let (variance, cost) = self.of(ends);
+            (variance + self.emission) * cost
+        };
+        choices.map(product).fold(f64::INFINITY, f64::min)
+    }
+
+    fn add(&mut self, paths: &[(PathSample, EndObserver<'_>); 2], usual: RayEnds, guide_cost: f64) {
+        let light = |sample: &PathSample| gray(sample.beauty() - sample.emission);
+        let [a, b] = paths.each_ref().map(|(sample, _)| light(sample));
+        self.light[0] += 0.5 * (a + b);
+        self.light[1] += half_square(a - b);
         self.emission += half_square(gray(paths[0].0.emission) - gray(paths[1].0.emission));
         let both = paths.each_ref().map(|(sample, ends)| ends.otherwise(sample));
         let costs = paths.each_ref().map(|(sample, ends)| ends.cost.of(sample) + guide_cost);
+        let variance = |choice| {
+            let [a, b] = [0, 1].map(|i| both[i] + paths[i].1.light(choice));
+            half_square(a - b)
+        };
+        let usual = variance(usual);
         for choice in RayEnds::all() {
             let index = choice.0 as usize;
-            let [a, b] = [0, 1].map(|i| both[i] + paths[i].1.light(choice));
-            self.variance[index] += half_square(a - b);
+            let variance = variance(choice);
+            self.variance[index] += variance;
+            self.doubt[index] += (variance - usual) * (variance - usual);
             self.cost[index] +=
                 [0, 1].iter().map(|&i| 0.5 * (costs[i] - paths[i].1.saved(choice))).sum::<f64>();
         }
     }
 
     fn over(mut self, pixels: f64) -> Self {
-        let sums = self.variance.iter_mut().chain(&mut self.cost).chain([&mut self.emission]);
+        let sums = self
+            .variance
+            .iter_mut()
+            .chain(&mut self.cost)
+            .chain([&mut self.emission])
+            .chain(&mut self.light);
         sums.for_each(|sum| *sum /= pixels);
+        self.doubt.iter_mut().for_each(|squares| *squares = squares.sqrt() / pixels);
         self
     }
 }

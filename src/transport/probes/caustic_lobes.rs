@@ -79,6 +79,11 @@ impl CausticLobes {
         caustic_lobes
     }
 
+    /// Whether there are none anywhere.
+    pub(super) fn is_empty(&self) -> bool {
+        self.all.is_empty()
+    }
+
     /// Caustic lobes of a leaf.
     #[inline]
     pub(super) fn of(&self, leaf: u32) -> &[CausticLobe] {

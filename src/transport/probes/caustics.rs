@@ -35,13 +35,14 @@ const MOST_ALPHA: f32 = 0.3;
 const FAR: f32 = 100.0;
 
 impl Probes {
-    /// Traces photons and gives their caustics to the probes.
+    /// Traces one of `part` of the photons and gives their caustics to the probes.
     ///
     /// # Errors
     /// [`Error::Cancelled`](crate::error::Error::Cancelled) where `progress` says so.
     pub(in crate::transport) fn find_caustics(
         &mut self,
         scene: &Scene,
+        part: u32,
         progress: Progress,
     ) -> Result<()> {
         let specular_surfaces = specular_surfaces(scene);
@@ -63,9 +64,10 @@ impl Probes {
             report(progress, PLACED)?;
             Ok(tracer.cast(surface_index, i).unwrap_or_default())
         };
-        let share = specular_surfaces.len() as f32 / RAYS as f32;
+        let rays = RAYS / part;
+        let share = specular_surfaces.len() as f32 / rays as f32;
         let segments: Result<Vec<Vec<PhotonSegment>>> =
-            (0..RAYS).into_par_iter().map(cast).collect();
+            (0..rays).into_par_iter().map(cast).collect();
         let mut segments = segments?.concat();
         segments.iter_mut().for_each(|segment| segment.fluence *= share);
         self.take_photon_segments(segments);

@@ -58,6 +58,15 @@ impl Octree {
         self.children.get(node as usize).copied().filter(|&child| child != 0)
     }
 
+    /// The parent of each node, which comes before it; that of the root is the root.
+    pub(super) fn parents(&self) -> Vec<u32> {
+        let mut parents = vec![0; self.children.len()];
+        for (node, &first) in self.children.iter().enumerate().filter(|(_, first)| **first != 0) {
+            parents[first as usize..first as usize + 8].fill(node as u32);
+        }
+        parents
+    }
+
     /// The leaf around a point, none outside of the cube.
     pub(super) fn leaf_at(&self, point: Vec3A) -> Option<u32> {
         self.find(point).map(|(node, ..)| node)

@@ -24,11 +24,15 @@ const FIRST_LEVELS: u32 = 3;
 
 impl Probes {
     /// Probes with the light of light samples alone, if the strategy of `scene` asks for any and
-    /// anything scatters.
+    /// anything scatters: one of `part` of those that it asks for.
     ///
     /// # Errors
     /// [`Error::Cancelled`](crate::error::Error::Cancelled) where `progress` says so.
-    pub(in crate::transport) fn placed(scene: &Scene, progress: Progress) -> Result<Option<Self>> {
+    pub(in crate::transport) fn placed(
+        scene: &Scene,
+        part: u32,
+        progress: Progress,
+    ) -> Result<Option<Self>> {
         let Some(recipe) = Self::recipe(&scene.strategy) else { return Ok(None) };
         let scores_lights = recipe.advanced.light_selection == LightSelection::Probes
             && scene.lights.len(direct::choice(&recipe).among) > 1;
@@ -51,7 +55,7 @@ impl Probes {
             mean_cosine: 0.0,
             scattered,
         };
-        probes.refine(&builder, recipe.advanced.probe_count, progress)?;
+        probes.refine(&builder, (recipe.advanced.probe_count / part).max(1), progress)?;
         probes.outside = OUTSIDE * probes.mean_radiance();
         probes.mean_cosine = probes.weighted_cosine();
         if scores_lights {

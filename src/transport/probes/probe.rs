@@ -63,6 +63,17 @@ pub struct Indirect {
     cosine: f32,
 }
 
+/// Light that paths have found in a node of the octree.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PathSums {
+    /// Number of the node.
+    pub node: u32,
+    /// Number of the paths.
+    pub paths: u32,
+    /// Sum of what they found.
+    pub sum: Indirect,
+}
+
 impl Default for Indirect {
     fn default() -> Self {
         Self { fluence: 0.0, flux: Vec3A::ZERO, axis: Vec3A::X, cosine: 0.0 }

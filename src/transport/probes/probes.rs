@@ -5,7 +5,7 @@ use glam::Vec3A;
 use super::caustic_lobes::{CausticLobe, CausticLobes, PhotonSegment};
 use super::distance_pdf::{DistancePdf, DistancePdfBuilder, RayPiece};
 use super::octree::Octree;
-use super::probe::{Indirect, Probe};
+use super::probe::{Indirect, PathSums, Probe};
 use crate::light::LightScores;
 use crate::math::{Aabb, Ray, mean};
 use crate::volume::medium::Segment;
@@ -13,6 +13,8 @@ use crate::volume::world::MediumRay;
 
 /// Light outside of the octree, relative to its mean radiance inside.
 pub(super) const OUTSIDE: f32 = 0.05;
+/// Paths of a leaf that count as much as all of those around it.
+const TRUSTED: f32 = 8.0;
 /// Share of the directions drawn towards lights (airlight) if all of their light is scattered.
 const MOST_AIRLIGHT: f32 = 0.5;
 /// Transmittance below which a ray reads no more leaves.
@@ -43,22 +45,31 @@ impl Probes {
         self.octree.leaves()
     }
 
-    /// Gives probes their learned indirect light, half of it averaged over the eight leaves of a
-    /// cut: each alone has few paths.
-    pub(in crate::transport) fn learn(&mut self, learned: &[(u32, Indirect)]) {
-        let family = |node: u32| node.div_ceil(8) as usize;
-        let mut families = vec![(Indirect::default(), 0.0); family(self.probes.len() as u32) + 1];
-        for (node, indirect) in learned {
-            let (sum, leaves) = &mut families[family(*node)];
-            sum.merge(indirect, 1.0);
-            *leaves += 1.0;
+    /// Gives probes the indirect light that paths have found: few paths in a leaf are averaged with
+    /// all of those around it, as if those were [`TRUSTED`] more.
+    pub(in crate::transport) fn learn(&mut self, found: &[PathSums]) {
+        let parents = self.octree.parents();
+        let mut all = vec![PathSums::default(); self.probes.len()];
+        for leaf in found {
+            all[leaf.node as usize] = *leaf;
         }
-        for (node, indirect) in learned {
-            let (sum, leaves) = &families[family(*node)];
-            let mut shared = Indirect::default();
-            shared.merge(indirect, 0.5);
-            shared.merge(sum, 0.5 / leaves);
-            self.probes[*node as usize].learn(&shared);
+        // Children follow their parent.
+        for node in (1..all.len()).rev() {
+            let PathSums { paths, sum, .. } = all[node];
+            let parent = &mut all[parents[node] as usize];
+            parent.paths += paths;
+            parent.sum.merge(&sum, 1.0);
+        }
+        let mut means = vec![Indirect::default(); all.len()];
+        for (node, PathSums { paths, sum, .. }) in all.iter().enumerate() {
+            let trusted = if node > 0 { TRUSTED } else { 0.0 };
+            let (paths, above) = (*paths as f32, means[parents[node] as usize]);
+            let mut mean = sum.scaled(1.0 / (paths + trusted).max(1.0));
+            mean.merge(&above, trusted / (paths + trusted).max(1.0));
+            means[node] = mean;
+        }
+        for (node, _) in self.leaves() {
+            self.probes[node as usize].learn(&means[node as usize]);
         }
         self.outside = OUTSIDE * self.mean_radiance();
         self.mean_cosine = self.weighted_cosine();
@@ -70,6 +81,11 @@ impl Probes {
             return None;
         }
         self.light_scores.get(self.octree.leaf_at(point)? as usize)?.as_ref()
+    }
+
+    /// Whether any probe knows of a caustic.
+    pub(in crate::transport) fn has_caustics(&self) -> bool {
+        !self.caustic_lobes.is_empty()
     }
 
     /// Number of probes.

@@ -8,6 +8,7 @@
 //! Sixteen settings with half of them sharing a choice find errors of it that are a third as large.
 //! Settings have seeds of their own, which is what makes their errors independent.
 
+use flambeau::error::NO_PROGRESS;
 use std::collections::{BTreeMap, BTreeSet};
 
 use flambeau::{
@@ -137,7 +138,7 @@ impl Verdicts {
         expected: &Expected,
     ) {
         let frame = framed_by_seed(scene, SIDE, self.next_seed());
-        let frame = frame.frame().clone().with_counts(counts);
+        let frame = frame.frame().clone().with_counts(counts, NO_PROGRESS).unwrap();
         let mut rows = Rows::default();
         self.follow(label, scene.strategy(), most / (SIDE * SIDE), expected, |samples| {
             rows.add(samples, |_| &frame, PathSample::beauty);

@@ -61,7 +61,7 @@ fn probe_placer() -> (ProbePlacer, Arc<Gate>) {
         while !at.open.load(Ordering::Relaxed) && progress(0.0) {
             std::thread::sleep(Duration::from_millis(1));
         }
-        let probes = prepare::probes(scene, progress)?;
+        let probes = SceneProbes::placed(scene, progress)?;
         at.passed.fetch_add(1, Ordering::Relaxed);
         Ok(probes)
     });
@@ -188,7 +188,7 @@ fn the_recipe_tells_all_that_decides_the_probes() {
     let glowing = SMOKE.replace("albedo = 0.9", "albedo = 0.5\nemission.mode = 'source'");
     let mut scenes = Scenes::new(&glowing.replace("= 'source'", "= 'source'\nemission.le = 1.0"));
     let probes = |scenes: &Scenes| {
-        format!("{:?}", prepare::probes(&scenes.build().scene, NO_PROGRESS).unwrap())
+        format!("{:?}", SceneProbes::placed(&scenes.build().scene, NO_PROGRESS).unwrap())
     };
     let first = probes(&scenes);
     let strategy = &mut scenes.settings.strategy;
