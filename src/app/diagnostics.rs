@@ -4,6 +4,7 @@
 //! - `cells`, `overlay`: the strongest cells of the volumes, gathered and drawn.
 //! - `ray`, `curves`, `plots`: the ray of a pixel, and its curves.
 //! - `legend`: the meaning of colors; `panel`: what is to be shown.
+//! - `spending`: what the time is spent on.
 
 mod cells;
 mod curves;
@@ -12,6 +13,7 @@ mod overlay;
 pub mod panel;
 mod plots;
 mod ray;
+mod spending;
 
 use egui::{Context, Ui};
 

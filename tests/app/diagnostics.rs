@@ -42,6 +42,19 @@ density = { scale = 9.0 }
     assert!(!window.has("Majorant, 1/length"));
 }
 
+/// Once the pilot pass has run, the section says what the time is spent on, and how many samples
+/// pay at each bounce.
+#[test]
+fn the_time_is_told_by_what_it_is_spent_on() {
+    let Some(mut window) = Window::open(BALL) else { return };
+    window.click(Role::Button, "Fixed");
+    window.click(Role::DisclosureTriangle, "Diagnostics");
+    window.until_finished();
+    assert!(window.has("Where the time goes"), "the time is not told");
+    assert!(window.has("emission along rays"), "the fire's part is not told");
+    assert!(window.has("first, in smoke"), "the bounces are not told");
+}
+
 /// The ball emits ε = μ_a · le with lum ε = 1.2 · (0.2126 · 2 + 0.7152 · 0.7 + 0.0722 · 0.2) = 1.128
 /// over 4π/3: a power of 4.726, in one cell.
 #[test]

@@ -1,13 +1,16 @@
-//! The section of diagnostics: cells over the picture, the step map, the ray inspector.
+//! The section of diagnostics: cells over the picture, the step map, the ray inspector, and how the
+//! time is spent.
 
 use egui::Ui;
 
 use super::Wanted;
 use super::cells::CellValue;
+use super::spending;
 use crate::app::ui::sections::folded_section;
 use crate::app::ui::theme::space;
 use crate::app::ui::widgets::{explain, row_label, segments};
 use crate::render::Layer;
+use crate::transport::path_setup::Spending;
 
 const CELLS: [(Option<CellValue>, &str, &str); 4] = [
     (None, "Off", "Show only the picture."),
@@ -31,7 +34,7 @@ const CELLS: [(Option<CellValue>, &str, &str); 4] = [
 ];
 
 /// Shows the section.
-pub fn show(ui: &mut Ui, wanted: &mut Wanted) {
+pub fn show(ui: &mut Ui, wanted: &mut Wanted, spending: Option<&Spending>) {
     folded_section(ui, "Diagnostics", |ui| {
         let choices = CELLS.map(|(_, name, help)| (name, help));
         let chosen = CELLS.iter().position(|(cells, ..)| *cells == wanted.cells);
@@ -54,5 +57,8 @@ pub fn show(ui: &mut Ui, wanted: &mut Wanted) {
                     of scattering there and their MIS weights.";
         ui.checkbox(&mut wanted.ray, "Inspect a ray").on_hover_text(help);
         explain(ui, "Click a pixel of the picture to plot its ray.");
+        if let Some(spending) = spending {
+            spending::show(ui, spending);
+        }
     });
 }

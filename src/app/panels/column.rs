@@ -41,7 +41,7 @@ pub fn show(
                 camera::show(ui, panel);
                 film::show(ui, panel, size, largest);
                 display::show(ui, panel);
-                panel::show(ui, panel.wanted);
+                panel::show(ui, panel.wanted, panel.spending.as_ref());
             });
             follow_keyboard(ui);
         });

@@ -31,6 +31,7 @@ use super::document::Editor;
 use super::jobs::built::Grids;
 use crate::math::Aabb;
 use crate::scene::Note;
+use crate::transport::path_setup::Spending;
 
 /// The state that a panel may read and change.
 pub struct Panel<'a> {
@@ -46,6 +47,8 @@ pub struct Panel<'a> {
     pub selected_light: &'a mut Option<usize>,
     /// Guided flights of a camera ray, relative to those that the probes propose, if that is known.
     pub guided_flights: Option<f32>,
+    /// How the time of the render is spent, if that is known.
+    pub spending: Option<Spending>,
     /// Second side of a comparison.
     pub second_side: &'a SecondSide,
     /// The reference and the errors against it.

@@ -78,6 +78,7 @@ impl App {
     fn panel_column(&mut self, ui: &mut Ui, plain: Frame, commands: &mut Vec<Command>) {
         let edited = self.compare.second_side.edited(&self.live_render);
         let guided_flights = edited.picture().and_then(|picture| picture.stats.guided_flights);
+        let spending = edited.picture().and_then(|picture| picture.stats.spending);
         let bounds = self.subject_bounds();
         let mut panel = Panel {
             editor: &mut self.editor,
@@ -86,6 +87,7 @@ impl App {
             bounds,
             selected_light: &mut self.gizmo.selected,
             guided_flights,
+            spending,
             second_side: &self.compare.second_side,
             reference: &mut self.compare.reference,
             wanted: &mut self.diagnostics.wanted,

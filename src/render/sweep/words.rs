@@ -4,7 +4,10 @@ use super::plan::TrialSource;
 use super::ranking::{Gain, RankedTrial, Ranking, Worth};
 use crate::format::{one_part_of, percent, rounded};
 use crate::render::compare::SpeedUp;
+use crate::transport::path_setup::Work;
 
+/// Share of the time below which work is not worth a word.
+const LEAST_SHARE: f32 = 0.01;
 /// Most names in a row before the rest is counted.
 const MOST_NAMES: usize = 4;
 
@@ -42,7 +45,26 @@ pub fn remarks(ranking: &Ranking) -> Vec<String> {
     let mut remarks = not_told_apart(ranking);
     remarks.extend(brought_alone(ranking));
     remarks.extend(lost(ranking));
+    remarks.extend(spent(ranking));
     remarks
+}
+
+/// Sentence on how the best strategy spends its time; `None` where that is not known.
+fn spent(ranking: &Ranking) -> Option<String> {
+    let best = ranking.best()?;
+    let spending = best.side?.spending?;
+    let mut parts: Vec<(f32, Work)> = spending
+        .shares
+        .into_iter()
+        .zip(Work::ALL)
+        .filter(|(share, _)| *share >= LEAST_SHARE)
+        .collect();
+    parts.sort_by(|(a, _), (b, _)| b.total_cmp(a));
+    let named =
+        |(share, work): &(f32, Work)| format!("{} ({})", work.name(), percent(f64::from(*share)));
+    let names: Vec<String> = parts.iter().map(named).collect();
+    let name = best.trial.kind.title();
+    (!names.is_empty()).then(|| format!("{name} spends its time on {}", listed(&names)))
 }
 
 /// Sentence on the toggles that gain on their own; `None` where no such gain is known.
