@@ -31,11 +31,13 @@ use crate::transport::strategy::{LightSelection, RayEnd, Strategy};
 /// to the number that the probes propose, and whether directions are guided.
 type Guidance = (f32, bool);
 
+/// No guidance at all.
 const UNGUIDED: Guidance = (0.0, false);
-/// Caustics alone.
+/// Guided directions without guided flights, which is enough for caustics.
 const DIRECTIONS: Guidance = (0.0, true);
 /// Guidance of first samples, which do not wait for the pilot pass, if any.
 const FIRST: Guidance = (0.25, true);
+/// Guidance that is tried with all probes, beside none.
 const TRIED: [Guidance; 3] = [(0.06, true), FIRST, (1.0, true)];
 /// Trials with few probes that show whether all of them are placed: the part of the cost of a trial
 /// with all, and the factor of variance times cost, against none, below which they go on.
