@@ -4,7 +4,7 @@
 //! - `cells`, `overlay`: the strongest cells of the volumes, gathered and drawn.
 //! - `ray`, `curves`, `plots`: the ray of a pixel, and its curves.
 //! - `legend`: the meaning of colors; `panel`: what is to be shown.
-//! - `spending`: what the time is spent on.
+//! - `spending`: the time by kind of work.
 
 mod cells;
 mod curves;

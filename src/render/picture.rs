@@ -8,7 +8,7 @@ use super::coarse::{representative, shown_pixel};
 use super::estimate::{FilmStats, LineStats, PixelEstimate, samples_per_pixel};
 use super::film::Film;
 use super::layers::{Layer, LayerMap};
-use crate::transport::path_setup::Spending;
+use crate::transport::spending::Spending;
 
 /// A finished image of an unfinished render.
 #[derive(Clone, Debug, Default)]

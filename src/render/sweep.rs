@@ -28,9 +28,9 @@ use super::pool::{Failure, Pool};
 use super::time_slice::{Amount, RenderedSide, SideInProgress, take_turns};
 use super::turns::Usage;
 use crate::error::{self, Error, Result, report};
-use crate::transport::path_setup::Spending;
 use crate::transport::prepare::SceneProbes;
 use crate::transport::probes::Probes;
+use crate::transport::spending::Spending;
 use crate::transport::strategy::Strategy;
 use crate::transport::{Frame, PixelSampler, PreparedFrame, Scene};
 

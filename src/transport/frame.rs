@@ -10,11 +10,12 @@ use super::emission::EmissionEstimator;
 use super::learned_counts::LearnedCounts;
 use super::observer::{Nobody, Observer};
 use super::path;
-use super::path_setup::{Guides, PathSetup, Spending};
+use super::path_setup::{Guides, PathSetup};
 use super::prepare::pilot_film::PilotFilm;
 use super::prepare::{self, SceneProbes, pilot};
 use super::sample::{PathSample, PixelSampler, Prepared, SampleNumber};
 use super::scene::Scene;
+use super::spending::Spending;
 use crate::error::{NO_PROGRESS, Progress, Result};
 use crate::math::{PathRng, Slot};
 

@@ -21,6 +21,7 @@ pub mod profile;
 mod sample;
 pub mod scene;
 pub mod shadow;
+pub mod spending;
 pub mod strategy;
 pub mod toggle;
 pub mod tracking;

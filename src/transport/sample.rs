@@ -3,7 +3,8 @@
 use glam::UVec2;
 
 use super::learned_counts::LearnedCounts;
-use super::path_setup::{PathSetup, Spending};
+use super::path_setup::PathSetup;
+use super::spending::Spending;
 use super::tracking::MOST_COLLISIONS;
 use super::tracking::event::{Event, Flight};
 use crate::error::{Progress, Result, report};

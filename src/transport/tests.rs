@@ -16,7 +16,7 @@ const SIZE: UVec2 = UVec2::new(16, 12);
 
 /// Asks for everything: probes with scores of several lights, caustics, learning, the optimal
 /// majorant and a pilot, in an emissive volume with cells.
-const SCENE: &str = r#"
+pub(super) const SCENE: &str = r#"
     [camera]
     position = [0, -4, 0]
     target = [0, 0, 0]

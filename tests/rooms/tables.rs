@@ -29,7 +29,7 @@ const TRANSPORT: Order = Order {
     folder: "src/transport",
     layers: &[
         &["camera", "learned_counts", "strategy", "vertex", "weight_window"],
-        &["observer", "toggle", "tracking"],
+        &["observer", "spending", "toggle", "tracking"],
         &["effective"],
         &["scene"],
         &["emission/ray", "transmittance"],

@@ -10,7 +10,7 @@ use crate::app::ui::sections::folded_section;
 use crate::app::ui::theme::space;
 use crate::app::ui::widgets::{explain, row_label, segments};
 use crate::render::Layer;
-use crate::transport::path_setup::Spending;
+use crate::transport::spending::Spending;
 
 const CELLS: [(Option<CellValue>, &str, &str); 4] = [
     (None, "Off", "Show only the picture."),

@@ -1,5 +1,5 @@
-//! What the time of a render is spent on: the share of each kind of work, and the samples that were
-//! learned to pay at each bounce.
+//! Tables of the time of a render: the share of each kind of work, and the samples that the pilot
+//! pass has found to pay at each bounce.
 
 use egui::{Align, Grid, Label, Layout, RichText, Ui, vec2};
 
@@ -7,7 +7,7 @@ use crate::app::ui::theme::{color, space};
 use crate::app::ui::widgets::explain;
 use crate::format::{percent, rounded};
 use crate::transport::learned_counts::BounceClass;
-use crate::transport::path_setup::{BounceCounts, Spending, Work};
+use crate::transport::spending::{BounceCounts, Spending, Work};
 
 /// Share of the time below which work has no row.
 const LEAST_SHARE: f32 = 0.005;
@@ -30,7 +30,7 @@ pub fn show(ui: &mut Ui, spending: &Spending) {
     });
     ui.add_space(space::TIGHT);
     ui.label("Samples at each bounce");
-    explain(ui, "How many were found to pay, of each bounce; bounces of each camera sample.");
+    explain(ui, "Bounces of one camera sample, and the samples found to pay at each.");
     grid(ui, "samples", |ui| {
         name(ui, "");
         for heading in ["bounces", "fires", "lights", "emission"] {

@@ -31,7 +31,7 @@ use super::document::Editor;
 use super::jobs::built::Grids;
 use crate::math::Aabb;
 use crate::scene::Note;
-use crate::transport::path_setup::Spending;
+use crate::transport::spending::Spending;
 
 /// The state that a panel may read and change.
 pub struct Panel<'a> {

@@ -1,6 +1,6 @@
 //! Figures of one side of a comparison.
 
-use crate::transport::path_setup::Spending;
+use crate::transport::spending::Spending;
 
 /// Figures of one side. Colors are linear; gray is (R + G + B) / 3; means run over the pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -4,7 +4,7 @@ use super::plan::TrialSource;
 use super::ranking::{Gain, RankedTrial, Ranking, Worth};
 use crate::format::{one_part_of, percent, rounded};
 use crate::render::compare::SpeedUp;
-use crate::transport::path_setup::Work;
+use crate::transport::spending::Work;
 
 /// Share of the time below which work is not worth a word.
 const LEAST_SHARE: f32 = 0.01;

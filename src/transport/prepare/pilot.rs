@@ -31,6 +31,8 @@ use crate::transport::strategy::{LightSelection, RayEnd, Strategy};
 /// to the number that the probes propose, and whether directions are guided.
 type Guidance = (f32, bool);
 
+/// The guidance of strategies that do not learn any: as much as the probes propose.
+const PROPOSED: Guidance = (1.0, true);
 /// No guidance at all.
 const UNGUIDED: Guidance = (0.0, false);
 /// Guided directions without guided flights, which is enough for caustics.
@@ -38,7 +40,7 @@ const DIRECTIONS: Guidance = (0.0, true);
 /// Guidance of first samples, which do not wait for the pilot pass, if any.
 const FIRST: Guidance = (0.25, true);
 /// Guidance that is tried with all probes, beside none.
-const TRIED: [Guidance; 3] = [(0.06, true), FIRST, (1.0, true)];
+const TRIED: [Guidance; 3] = [(0.06, true), FIRST, PROPOSED];
 /// Trials with few probes that show whether all of them are placed: the part of the cost of a trial
 /// with all, and the factor of variance times cost, against none, below which they go on.
 const PROMISING: [(f64, f64); 2] = [(0.25, 1.5), (1.0, 0.9)];
@@ -84,7 +86,7 @@ pub(in crate::transport) fn first(
     if size.min_element() == 0 || !(learns_guidance || learns_ends(scene)) {
         return Ok(setup);
     }
-    let tried = if learns_guidance { &[FIRST, UNGUIDED][..] } else { &[(1.0, true)] };
+    let tried = if learns_guidance { &[FIRST, UNGUIDED][..] } else { &[PROPOSED] };
     let context = setup.context(emission_estimator);
     let trials = trials(film, context, tried, LEAST_BUDGET, progress)?;
     let margins = [MARGIN_OF_FIRST; 2];
@@ -117,7 +119,7 @@ pub(in crate::transport) fn learn(
     }
     let context = setup.context(emission_estimator);
     setup.counts = light_counts::learn(scene, size, context, progress)?;
-    let mut tried = vec![if learns_guidance { UNGUIDED } else { (1.0, true) }];
+    let mut tried = vec![if learns_guidance { UNGUIDED } else { PROPOSED }];
     if let Some(probes) = probes.filter(|_| learns_guidance) {
         tried.extend(promising(film, &setup, progress)?);
         if tried.len() > 1 {

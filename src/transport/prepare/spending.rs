@@ -1,4 +1,4 @@
-//! How the time of a picture is spent, counted along some paths of it.
+//! Counts the cost of some paths of a picture by kind of work.
 
 use super::cost::Cost;
 use super::pilot_film::PilotFilm;
@@ -6,7 +6,8 @@ use super::pilot_pixel::{LEAST_BUDGET, PilotPixel};
 use crate::error::{Progress, Result, report};
 use crate::transport::learned_counts::BounceClass;
 use crate::transport::observer::{Observer, PathStep};
-use crate::transport::path_setup::{BounceCounts, PathSetup, Spending, Work};
+use crate::transport::path_setup::PathSetup;
+use crate::transport::spending::{BounceCounts, Spending, Work};
 
 /// Most pixels whose paths are counted.
 const MOST_PIXELS: u32 = 1 << 12;
@@ -112,32 +113,9 @@ mod tests {
     use glam::UVec2;
 
     use crate::error::NO_PROGRESS;
-    use crate::transport::path_setup::Work;
+    use crate::transport::spending::Work;
+    use crate::transport::tests::SCENE;
     use crate::transport::{PreparedFrame, Scene};
-
-    /// A fire in smoke and a lamp over a floor.
-    const SCENE: &str = r#"
-        [camera]
-        position = [0, -4, 1]
-        target = [0, 0, 0]
-        [[volume]]
-        shape = "box"
-        half_size = 0.6
-        density = { scale = 1.0 }
-        albedo = 0.7
-        emission = { mode = "source", le = 2.0 }
-        [[light]]
-        type = "sphere"
-        center = [1.5, -1.0, 1.5]
-        radius = 0.3
-        radiance = 4.0
-        [[surface]]
-        shape = "plane"
-        point = [0, 0, -0.7]
-        normal = [0, 0, 1]
-        half_size = 4.0
-        material = { type = "diffuse", reflectance = 0.6 }
-    "#;
 
     /// Shares add up to all of the time, work that a strategy leaves out has none, and no vertex
     /// has more samples of a kind than one.
