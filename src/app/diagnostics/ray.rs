@@ -149,8 +149,8 @@ impl Inspector {
         };
         let depth = significant(f64::from(profile.optical_depth));
         let guided = match profile {
-            Profile { guided: false, .. } => ", no probes",
             Profile { flights_scale: 0.0, .. } => ", probes switched off automatically",
+            Profile { guided: false, .. } => ", no probes",
             _ => "",
         };
         ui.label(format!("Pixel {x}, {y}: optical depth {depth}{guided}"));
