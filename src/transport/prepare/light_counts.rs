@@ -30,17 +30,19 @@ use crate::transport::scene::Scene;
 const MOST_PIXELS: u32 = 1 << 13;
 /// Groups that the pixels fall into.
 const GROUPS: usize = 8;
-/// Counts for each unit of throughput that are compared. Rarer samples would save little more, and
-/// bring more rare bright ones, which so few paths know nothing of.
+/// Counts for each unit of throughput that are compared. Between none and the least, samples would
+/// save little more, and bring rare bright ones, which so few paths know nothing of.
 const TRIED: [f32; 8] = [0.0, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, f32::INFINITY];
 /// Fewest light samples of lamps, and emission walks, for each unit of throughput: near to small
 /// lamps and inside of fires the other technique has rare bright finds.
 const FEWEST: f32 = 0.25;
 /// Least part of the measured variance that any counts are taken to leave.
 const LEAST_LEFT: f64 = 0.1;
-/// Factor by which a change of a count must lower variance times cost. Samples that are spread
-/// evenly have less variance than the independent ones of the pilot, so that rounding adds more.
+/// Factor by which a change of a count must lower variance times cost.
 const GAIN: f64 = 0.95;
+/// The same at first vertices: samples that are spread evenly there have much less variance than the
+/// independent ones of the pilot, so that rounding adds more.
+const GAIN_OF_FIRST: f64 = 0.8;
 /// Largest factor of a contribution by other counts: none of them would find it.
 const LARGEST: f64 = 1e6;
 /// Cost of an emission walk whose emission is not weighted against light samples, relative to one
@@ -75,7 +77,8 @@ pub(super) fn learn(
 /// Takes the rule of one technique at one class that has the least variance times cost.
 fn improve(groups: &mut [Group], best: &mut LearnedCounts, class: BounceClass, kind: Kind) {
     let rules = best.at_mut(class);
-    let mut least = objective(groups, class, rules) + GAIN.ln();
+    let gain = if is_first(class) { GAIN_OF_FIRST } else { GAIN };
+    let mut least = objective(groups, class, rules) + gain.ln();
     for per_throughput in TRIED {
         if per_throughput < FEWEST && kind != Kind::FireSample {
             continue;
@@ -91,6 +94,11 @@ fn improve(groups: &mut [Group], best: &mut LearnedCounts, class: BounceClass, k
     for group in groups {
         group.set(class, group.added(class, rules));
     }
+}
+
+/// Whether vertices of a class have samples that are spread evenly over the samples of a pixel.
+fn is_first(class: BounceClass) -> bool {
+    matches!(class, BounceClass::FirstInMedium | BounceClass::FirstOnSurface)
 }
 
 /// The counts that matter in a scene.
@@ -225,7 +233,7 @@ impl Group {
 /// At the first vertex the counts are rounded by numbers that are spread evenly over the samples of
 /// a pixel, so that only the variance of a technique's samples matters; later, their second moment.
 fn added(class: BounceClass, records: &[Record], rules: &ClassCounts) -> (f64, f64) {
-    let is_first = matches!(class, BounceClass::FirstInMedium | BounceClass::FirstOnSurface);
+    let is_first = is_first(class);
     let mut differences = [0.0; Kind::COUNT];
     let (mut variance, mut cost) = (0.0, 0.0);
     for record in records {
