@@ -1,5 +1,7 @@
 //! The program from end to end: what it writes, prints and returns.
 
+#[path = "cli/frames.rs"]
+mod frames;
 #[path = "cli/interrupts.rs"]
 mod interrupts;
 #[path = "cli/losses.rs"]

@@ -1,9 +1,10 @@
 //! Outputs that would overwrite an input, or one another.
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use super::exit::Refusal;
-use crate::error::Error;
+use crate::error::{Error, Result};
 use crate::files::Identity;
 use crate::scene::{self, Settings};
 
@@ -11,7 +12,7 @@ use crate::scene::{self, Settings};
 pub struct Named<'a> {
     /// Name of the file in messages: an option for an output, words for an input.
     what: &'a str,
-    path: &'a Path,
+    path: Cow<'a, Path>,
     /// Whether the file is a snapshot to resume, or a picture that can be resumed: a snapshot may
     /// be replaced by its own continuation.
     continues: bool,
@@ -19,23 +20,26 @@ pub struct Named<'a> {
 
 impl<'a> Named<'a> {
     /// A file and its name in messages.
-    pub fn new(what: &'a str, path: &'a Path) -> Self {
-        Self { what, path, continues: false }
+    pub fn new(what: &'a str, path: impl Into<Cow<'a, Path>>) -> Self {
+        Self { what, path: path.into(), continues: false }
     }
 
     /// A snapshot to resume, or one that continues it.
-    pub fn snapshot(what: &'a str, path: &'a Path) -> Self {
+    pub fn snapshot(what: &'a str, path: impl Into<Cow<'a, Path>>) -> Self {
         Self { continues: true, ..Self::new(what, path) }
     }
 }
 
 /// The files that the scene called `name` is read from: its own and those of its volumes. What is
 /// embedded in the program is none.
-pub fn files_of_scene<'a>(name: &'a str, settings: &'a Settings) -> Vec<Named<'a>> {
+///
+/// # Errors
+/// The folder of a sequence cannot be read or has no frame.
+pub fn files_of_scene<'a>(name: &'a str, settings: &Settings) -> Result<Vec<Named<'a>>> {
     let own = scene::scene_file(name).map(|path| Named::new("the scene", path));
-    let volumes =
-        scene::volume_files(settings).map(|path| Named::new("a volume of the scene", path));
-    own.into_iter().chain(volumes).collect()
+    let volumes = scene::volume_files(settings)?;
+    let volumes = volumes.into_iter().map(|path| Named::new("a volume of the scene", path));
+    Ok(own.into_iter().chain(volumes).collect())
 }
 
 /// Refuses to write a file over one that is read, or two to the same place, however their paths are
@@ -71,7 +75,7 @@ pub fn refuse_clashes(reads: &[Named], writes: &[Named]) -> Result<(), Refusal> 
 }
 
 fn identified<'n, 'a>(files: &'n [Named<'a>]) -> Vec<(&'n Named<'a>, Identity)> {
-    files.iter().filter_map(|named| Some((named, Identity::of(named.path)?))).collect()
+    files.iter().filter_map(|named| Some((named, Identity::of(&named.path)?))).collect()
 }
 
 #[cfg(test)]

@@ -100,7 +100,7 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
     let reference = arguments.reference.as_deref();
     let reference = reference.map(|path| errors::load(path, size)).transpose()?;
     if let Some(folder) = &arguments.output {
-        let mut reads = files_of_scene(arguments.scene.name(), &shared);
+        let mut reads = files_of_scene(arguments.scene.name(), &shared)?;
         let given = arguments.reference.as_deref();
         reads.extend(given.map(|path| Named::new("the reference", path)));
         make_folder(folder, &FILES, &reads)?;
@@ -109,7 +109,7 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
         true => scene::fingerprints(&shared, &go_on)?,
         false => Vec::new(),
     };
-    let scene = scene::assemble(&shared, &cache, &go_on)?;
+    let scene = arguments.scene.assemble(&shared, &cache, &go_on)?;
     let cpu_setup = process_seconds();
     let [a, b] = settings;
     let sides = [prepare(&scene, a, &go_on)?, prepare(&scene, b, &go_on)?];
@@ -175,7 +175,7 @@ fn prepare(scene: &Scene, settings: Settings, progress: Progress) -> Result<Prep
     let before = process_seconds();
     let scene = scene.clone().with_strategy(settings.strategy);
     let size = UVec2::from_array(settings.film.size);
-    let frame = PreparedFrame::new(Arc::new(scene), size, settings.film.seed, progress)?;
+    let frame = PreparedFrame::new(Arc::new(scene), size, settings.picture_seed(), progress)?;
     let setup = process_seconds() - before;
     Ok(Prepared { settings, sampler: Arc::new(frame), setup })
 }

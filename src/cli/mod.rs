@@ -1,7 +1,8 @@
 //! The command line: one file a command. `main` parses, runs and reports.
 //!
 //! - `render`, `compare`, `sweep`, `info`, `keys`, `replay`: the commands.
-//! - `scene_source`: the scene that a command works on; `values`: values of options.
+//! - `scene_source`: the scene that a command works on; `frames`: its frames; `values`: values of
+//!   options.
 //! - `outputs`, `clashes`, `rescue`: the files written, which replace no input and are never lost.
 //! - `snapshot_header`, `stats`, `speed_up_row`: contents of these files.
 //! - `console`, `interrupt`, `exit`, `failed_path`: messages, Ctrl-C, exit codes.
@@ -13,6 +14,7 @@ mod console;
 pub mod cpu_time;
 mod exit;
 mod failed_path;
+mod frames;
 mod info;
 mod interrupt;
 mod keys;

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::clashes::{Named, refuse_clashes};
 use super::exit::Refusal;
+use super::frames::path_of_frame;
 use super::rescue;
 use crate::error::{Error, Result};
 use crate::files::{self, check_writable};
@@ -53,6 +54,11 @@ impl Output {
     /// Path of the file.
     pub fn path(&self) -> &Path {
         &self.path
+    }
+
+    /// The file of a frame: the same one unless its name has a place for the number.
+    pub fn of_frame(&self, frame: i32) -> Self {
+        Self { path: path_of_frame(&self.path, frame), format: self.format }
     }
 
     /// Whether the file is a snapshot, which can be resumed.

@@ -13,6 +13,7 @@ use super::console::{progress_bar, warn, warn_of_lost_samples};
 use super::cpu_time::process_seconds;
 use super::exit::{Exit, Refusal};
 use super::failed_path;
+use super::frames::{FrameList, path_of_frame, refuse_one_file_for_all};
 use super::interrupt::listen_for_interrupt;
 use super::outputs::{Output, write_all};
 use super::scene_source::SceneArguments;
@@ -37,30 +38,44 @@ pub struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
     /// Where to write: .exr keeps all layers and can be continued, .png is as seen on screen, .npy
-    /// is the linear picture for scripts. Several are allowed.
+    /// is the linear picture for scripts. Several are allowed. `out.####.exr` has the number of the
+    /// frame in place of #.
     #[arg(short, long = "output", value_name = "OUT", required = true)]
     output: Vec<Output>,
+    /// Frames of a sequence, each to a file of its own: A-B, or every N-th of them by A-BxN.
+    #[arg(long, value_name = "A-B[xN]", allow_hyphen_values = true, conflicts_with = "frame")]
+    frames: Option<FrameList>,
     /// Samples per pixel.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
     spp: Option<u32>,
-    /// Stop this many seconds after the start, setting up included. Set-up is never cut short, and
+    /// Stop this many seconds after the start of a frame, setting up included. Set-up is never cut short, and
     /// every pixel gets one sample: where the time is too short for both, it ends after them.
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
     time: Option<f64>,
     /// Number of threads; one a core if absent. The picture does not depend on it.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    /// Write the figures of the render as JSON; `-` is standard output.
+    /// Write the figures of the render as JSON; `-` is standard output. `stats.####.json` has the
+    /// number of the frame in place of #.
     #[arg(long, value_name = "STATS.json")]
     stats: Option<PathBuf>,
     /// Go on from a snapshot of the same scene.
-    #[arg(long, value_name = "OUT.exr")]
+    #[arg(long, value_name = "OUT.exr", conflicts_with = "frames")]
     resume: Option<PathBuf>,
 }
 
+/// A picture to render.
+struct FrameJob {
+    settings: Settings,
+    limits: Limits,
+    outputs: Vec<Output>,
+    /// File of the figures of the render.
+    stats: Option<PathBuf>,
+}
+
 pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
-    let start = Instant::now();
     let interrupt = listen_for_interrupt()?;
+    let mut start = Start { wall: Instant::now(), cpu: 0.0 };
     let go_on = |_: f32| !interrupt.load(Ordering::Relaxed);
     let cache = VolumeCache::default();
     let mut settings = arguments.scene.settings(&cache, &go_on)?;
@@ -68,22 +83,84 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
         warn("ray marching is on (strategy.integrator): the picture is biased");
     }
     let limits = limits(arguments, &mut settings);
-    check_places(arguments, &settings)?;
+    let jobs = jobs(arguments, &settings, limits)?;
+    for job in &jobs {
+        arguments.scene.refuse_missing(&job.settings)?;
+        check_places(arguments, job)?;
+    }
+    for job in jobs {
+        match render(arguments, job, start, &cache, &interrupt)? {
+            Exit::Done => start = Start { wall: Instant::now(), cpu: process_seconds() },
+            exit => return Ok(exit),
+        }
+    }
+    Ok(Exit::Done)
+}
+
+/// The pictures to render, frame by frame.
+fn jobs(
+    arguments: &Arguments,
+    settings: &Settings,
+    limits: Limits,
+) -> Result<Vec<FrameJob>, Refusal> {
+    let stats = arguments.stats.as_deref();
+    if arguments.frames.is_some_and(FrameList::has_several) {
+        let files = stats.filter(|path| !is_standard_output(path));
+        arguments
+            .output
+            .iter()
+            .map(|output| ("-o", output.path()))
+            .chain(files.map(|path| ("--stats", path)))
+            .try_for_each(|(option, path)| refuse_one_file_for_all(option, path))?;
+    }
+    let frames = match arguments.frames {
+        Some(list) => list.iter().map(f64::from).collect(),
+        None => vec![settings.time.frame],
+    };
+    let job = |frame| {
+        let mut settings = settings.clone();
+        settings.time.frame = frame;
+        let number = settings.time.whole_frame();
+        let outputs = arguments.output.iter().map(|output| output.of_frame(number)).collect();
+        let stats = stats.map(|path| path_of_frame(path, number));
+        FrameJob { settings, limits, outputs, stats }
+    };
+    Ok(frames.into_iter().map(job).collect())
+}
+
+/// When the work on a picture began.
+#[derive(Clone, Copy)]
+struct Start {
+    wall: Instant,
+    /// CPU time that the program had spent by then, in seconds.
+    cpu: f64,
+}
+
+/// Renders one picture and writes it.
+fn render(
+    arguments: &Arguments,
+    job: FrameJob,
+    start: Start,
+    cache: &VolumeCache,
+    interrupt: &AtomicBool,
+) -> Result<Exit, Refusal> {
+    let FrameJob { settings, limits, .. } = &job;
+    let go_on = |_: f32| !interrupt.load(Ordering::Relaxed);
     let files = match arguments.resume.is_some() || writes_snapshot(arguments) {
-        true => scene::fingerprints(&settings, &go_on)?,
+        true => scene::fingerprints(settings, &go_on)?,
         false => Vec::new(),
     };
     let resumed = match &arguments.resume {
-        Some(path) => Some(resume(path, &settings, &files, &go_on)?),
+        Some(path) => Some(resume(path, settings, &files, &go_on)?),
         None => None,
     };
-    let scene = scene::assemble(&settings, &cache, &go_on)?;
+    let scene = arguments.scene.assemble(settings, cache, &go_on)?;
     let (film, before) = match resumed {
         Some(Snapshot { film, header }) => (Some(film), spent_before(&header)),
         None => (None, Spent::default()),
     };
     let size = UVec2::from_array(settings.film.size);
-    let frame = Frame::new(Arc::new(scene), size, settings.film.seed, &go_on)?;
+    let frame = Frame::new(Arc::new(scene), size, settings.picture_seed(), &go_on)?;
     // A single sample needs no pilot pass.
     let sampler: Arc<dyn PixelSampler> = match limits.spp {
         1 => Arc::new(frame),
@@ -91,21 +168,21 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
     };
     let cpu_setup = process_seconds();
     let paths_before = film.as_ref().map_or(0, |film| film.totals.paths);
-    let job = RenderJob {
+    let render_job = RenderJob {
         sampler,
         size,
-        limits: limits_left(limits, start),
+        limits: limits_left(*limits, start.wall),
         resume: film,
         threads: arguments.threads.map(usize::from),
     };
-    let render = show_progress(job, &interrupt)?;
-    refuse_nothing(arguments, &settings, &render, paths_before)?;
+    let render = show_progress(render_job, interrupt)?;
+    refuse_nothing(arguments, settings, &render, paths_before)?;
     let spent = before.plus(Spent {
-        wall: start.elapsed().as_secs_f64(),
-        cpu_setup,
+        wall: start.wall.elapsed().as_secs_f64(),
+        cpu_setup: cpu_setup - start.cpu,
         cpu_render: process_seconds() - cpu_setup,
     });
-    finish(arguments, &settings, files, &render, spent)
+    finish(arguments, &job, files, &render, spent)
 }
 
 /// Limits of samples and time, from the command line, the scene and the default, in this order. The
@@ -141,15 +218,15 @@ fn limits_left(limits: Limits, start: Instant) -> Limits {
 
 /// Finds out before hours of rendering what would overwrite an input after them, or could not be
 /// written.
-fn check_places(arguments: &Arguments, settings: &Settings) -> Result<(), Refusal> {
-    let stats = arguments.stats.as_deref().filter(|path| !is_standard_output(path));
-    let mut reads = files_of_scene(arguments.scene.name(), settings);
+fn check_places(arguments: &Arguments, job: &FrameJob) -> Result<(), Refusal> {
+    let stats = job.stats.as_deref().filter(|path| !is_standard_output(path));
+    let mut reads = files_of_scene(arguments.scene.name(), &job.settings)?;
     let snapshot = arguments.resume.as_deref();
     reads.extend(snapshot.map(|path| Named::snapshot("the snapshot to go on from", path)));
-    let mut writes: Vec<Named> = arguments.output.iter().map(Output::named).collect();
+    let mut writes: Vec<Named> = job.outputs.iter().map(Output::named).collect();
     writes.extend(stats.map(|path| Named::new("--stats", path)));
     refuse_clashes(&reads, &writes)?;
-    arguments.output.iter().map(Output::path).chain(stats).try_for_each(check_writable)?;
+    job.outputs.iter().map(Output::path).chain(stats).try_for_each(check_writable)?;
     Ok(())
 }
 
@@ -225,7 +302,7 @@ fn show_progress(job: RenderJob, interrupt: &AtomicBool) -> Result<Headless> {
 /// Writes what there is and says how it went.
 fn finish(
     arguments: &Arguments,
-    settings: &Settings,
+    FrameJob { settings, outputs, stats, .. }: &FrameJob,
     files: Vec<Fingerprint>,
     render: &Headless,
     spent: Spent,
@@ -233,8 +310,8 @@ fn finish(
     let film = &render.film;
     let header = header(settings, files, spent)?;
     let figures = render.pool.install(|| FilmStats::of(film));
-    let written = render.pool.install(|| write_all(&arguments.output, film, &header));
-    if let Some(path) = &arguments.stats {
+    let written = render.pool.install(|| write_all(outputs, film, &header));
+    if let Some(path) = stats {
         let threads = render.pool.threads();
         let stats =
             Stats::new(film, &figures, spent, settings.film.seed, threads, settings.strategy);
@@ -244,7 +321,7 @@ fn finish(
         }
     }
     written?;
-    report(arguments, render, &figures);
+    report(outputs, render, &figures);
     if let Some(failure) = &render.failure {
         let what = failed_path::in_words(failure, &arguments.scene.in_words(settings));
         return Err(Error::invalid("", "", what).into());
@@ -252,10 +329,10 @@ fn finish(
     Ok(if render.interrupted { Exit::Interrupted } else { Exit::Done })
 }
 
-fn report(arguments: &Arguments, render: &Headless, figures: &FilmStats) {
+fn report(outputs: &[Output], render: &Headless, figures: &FilmStats) {
     let noise = figures.noise.map_or(String::new(), |n| format!(", noise {:.2} %", n * 100.0));
     let names: Vec<String> =
-        arguments.output.iter().map(|output| output.path().display().to_string()).collect();
+        outputs.iter().map(|output| output.path().display().to_string()).collect();
     warn(&format!(
         "{}{:.4} samples per pixel in {:.1} s{noise}: {}",
         if render.interrupted { "interrupted after " } else { "" },

@@ -11,7 +11,7 @@ use super::exit::{Exit, Refusal};
 use super::scene_source::SceneArguments;
 use super::values::parse_pixel;
 use crate::error::{Error, NO_PROGRESS};
-use crate::scene::{self, VolumeCache};
+use crate::scene::VolumeCache;
 use crate::transport::observer::{Observer, PathStep};
 use crate::transport::vertex::Vertex;
 use crate::transport::{PathSample, PreparedFrame};
@@ -37,8 +37,8 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
         let reason = format!("{},{} is off the film of {} x {}", pixel.x, pixel.y, size.x, size.y);
         return Err(Refusal::usage(Error::invalid("", "--pixel", reason)));
     }
-    let scene = scene::assemble(&settings, &cache, NO_PROGRESS)?;
-    let frame = PreparedFrame::new(Arc::new(scene), size, settings.film.seed, NO_PROGRESS)?;
+    let scene = arguments.scene.assemble(&settings, &cache, NO_PROGRESS)?;
+    let frame = PreparedFrame::new(Arc::new(scene), size, settings.picture_seed(), NO_PROGRESS)?;
     let mut log = Log::default();
     let sample = frame.trace(pixel, arguments.sample, &mut log);
     print(&format!("{}{}", log.text, summary(&sample)))?;

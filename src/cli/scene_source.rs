@@ -5,10 +5,12 @@ use glam::UVec2;
 
 use super::console::warn;
 use super::exit::Refusal;
-use super::values::{parse_size, quoted};
-use crate::error::{Progress, Result};
-use crate::scene::settings::MAX_SEED;
+use super::values::{parse_frame, parse_size, quoted};
+use crate::error::{Error, Progress, Result};
+use crate::scene::sequence::{Gap, volume_frame};
+use crate::scene::settings::{MAX_SEED, TimeSettings};
 use crate::scene::{self, Overrides, Settings, VolumeCache};
+use crate::transport::Scene;
 use crate::transport::strategy::Preset;
 
 /// Arguments that name a scene and change it.
@@ -29,6 +31,12 @@ pub struct SceneArguments {
     /// Width and height in pixels.
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     size: Option<UVec2>,
+    /// The frame of a sequence.
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = parse_frame)]
+    frame: Option<f64>,
+    /// Where the file of a frame is missing, take the frame before instead of failing.
+    #[arg(long)]
+    allow_missing: bool,
 }
 
 impl SceneArguments {
@@ -47,7 +55,50 @@ impl SceneArguments {
         if let Some(seed) = self.seed {
             settings.film.seed = seed;
         }
+        if let Some(frame) = self.frame {
+            settings.time.frame = frame;
+        }
         Ok(settings)
+    }
+
+    /// Refuses a frame whose files are missing, unless the command line allows it.
+    ///
+    /// # Errors
+    /// Names the file that is missing.
+    pub fn refuse_missing(&self, settings: &Settings) -> Result<()> {
+        if self.allow_missing {
+            return Ok(());
+        }
+        for volume in &settings.volume {
+            let frame = volume_frame(volume, &settings.time)?;
+            let Some(Gap::Frame { file, frame, held }) = frame.gap else { continue };
+            let instead = match held {
+                Some(held) => format!("renders frame {held}"),
+                None => "renders nothing".to_owned(),
+            };
+            let reason =
+                format!("frame {frame} is missing; --allow-missing {instead} in its place");
+            return Err(Error::invalid(file, "", reason));
+        }
+        Ok(())
+    }
+
+    /// The scene of the settings. What its frame lacks is said on standard error, or refused.
+    ///
+    /// # Errors
+    /// As [`scene::assemble`] and [`SceneArguments::refuse_missing`].
+    pub fn assemble(
+        &self,
+        settings: &Settings,
+        cache: &VolumeCache,
+        progress: Progress,
+    ) -> Result<Scene> {
+        self.refuse_missing(settings)?;
+        let assembled = scene::assemble_frame(settings, cache, progress)?;
+        for gap in &assembled.gaps {
+            warn(&format!("{}: {gap}", gap.file()));
+        }
+        Ok(assembled.scene)
     }
 
     /// The size that the command line asks for.
@@ -69,6 +120,12 @@ impl SceneArguments {
         words.extend(self.set.iter().map(|assignment| format!("--set {}", quoted(assignment))));
         let [width, height] = settings.film.size;
         words.push(format!("--size {width}x{height} --seed {}", settings.film.seed));
+        if settings.time.frame != TimeSettings::default().frame {
+            words.push(format!("--frame {}", settings.time.frame));
+        }
+        if self.allow_missing {
+            words.push("--allow-missing".to_owned());
+        }
         words.join(" ")
     }
 }

@@ -27,7 +27,7 @@ use crate::render::sweep::{
 };
 use crate::render::time_slice::Amount;
 use crate::scene::effect::no_effect_with;
-use crate::scene::{self, Settings, VolumeCache};
+use crate::scene::{Settings, VolumeCache};
 use crate::transport::Scene;
 use table::SweepTable;
 
@@ -65,9 +65,9 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
         settings.film.size = quick_size(settings.film.size.into()).into();
     }
     if let Some(folder) = &arguments.output {
-        make_folder(folder, &FILES, &files_of_scene(arguments.scene.name(), &settings))?;
+        make_folder(folder, &FILES, &files_of_scene(arguments.scene.name(), &settings)?)?;
     }
-    let scene = scene::assemble(&settings, &cache, &go_on)?;
+    let scene = arguments.scene.assemble(&settings, &cache, &go_on)?;
     let trials =
         plan(&settings.strategy, &|toggle, strategy| no_effect_with(toggle, &settings, strategy));
     let pool = Pool::new(arguments.threads.map(usize::from), Priority::Normal)?;
@@ -108,7 +108,7 @@ fn show_progress(
     };
     let amount = Amount { spp: arguments.spp.unwrap_or(0), cpu_seconds, evenly: true };
     let size = UVec2::from(settings.film.size);
-    let job = SweepJob { scene, trials, size, seed: settings.film.seed, amount };
+    let job = SweepJob { scene, trials, size, seed: settings.picture_seed(), amount };
     let bar: ProgressBar = progress_bar(STEPS);
     let result = sweep(&job, pool, interrupt, &mut |progress| match progress {
         SweepProgress::Preparing(done, all) => {

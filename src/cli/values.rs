@@ -2,6 +2,18 @@
 
 use glam::UVec2;
 
+use crate::scene::settings::MAX_FRAME;
+
+/// A frame of a sequence, which may lie between two.
+pub fn parse_frame(text: &str) -> Result<f64, String> {
+    let most = f64::from(MAX_FRAME);
+    match text.parse::<f64>() {
+        Ok(frame) if frame.abs() <= most => Ok(frame),
+        Ok(_) => Err(format!("frames lie between -{most} and {most}")),
+        Err(_) => Err("expected the number of a frame".to_owned()),
+    }
+}
+
 /// A number of seconds above 0.
 pub fn parse_seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {

@@ -7,6 +7,7 @@ mod volumes;
 
 use glam::Vec3A;
 
+use super::sequence::Gap;
 use super::{VolumeCache, settings::Settings};
 use crate::{
     error::{Error, Progress, Result},
@@ -18,12 +19,33 @@ use crate::{
 pub(crate) use placement::world_from_file;
 use surfaces::LightOrSurface;
 
-/// Builds the scene of the settings. Files and what was derived from them stay in `cache`, so that
+/// A scene as it was built.
+#[derive(Clone, Debug)]
+pub struct Assembled {
+    /// The scene.
+    pub scene: Scene,
+    /// What the frame lacks, volume by volume.
+    pub gaps: Vec<Gap>,
+}
+
+/// Builds the scene of the settings at their frame. What the frame lacks is passed over.
+///
+/// # Errors
+/// The errors of [`assemble_frame`].
+pub fn assemble(settings: &Settings, cache: &VolumeCache, progress: Progress) -> Result<Scene> {
+    assemble_frame(settings, cache, progress).map(|assembled| assembled.scene)
+}
+
+/// Builds the scene of the settings at their frame. Files and what was derived from them stay in `cache`, so that
 /// a scene of which only numbers have changed is built in a few milliseconds.
 ///
 /// # Errors
 /// The settings are not valid, or a volume cannot be read; names the file, the key and the fix.
-pub fn assemble(settings: &Settings, cache: &VolumeCache, progress: Progress) -> Result<Scene> {
+pub fn assemble_frame(
+    settings: &Settings,
+    cache: &VolumeCache,
+    progress: Progress,
+) -> Result<Assembled> {
     super::validate(settings, "")?;
     let mut surfaces: Vec<_> = settings.surface.iter().map(surfaces::surface).collect();
     let mut lights = Vec::new();
@@ -33,14 +55,15 @@ pub fn assemble(settings: &Settings, cache: &VolumeCache, progress: Progress) ->
             LightOrSurface::Surface(surface) => surfaces.push(surface),
         }
     }
-    let instances = volumes::instances(&settings.volume, cache, progress)?;
+    let (instances, gaps) = volumes::instances(&settings.volume, &settings.time, cache, progress)?;
     let used: Vec<_> = instances.iter().map(|instance| instance.volume().clone()).collect();
     cache.retain(&used);
     let world = World::new(instances);
     let camera = camera(settings)?;
     let lights = Lights::new(settings.environment.radiance.rgb(), lights, &surfaces, &world);
     let max_scatters = settings.path.max_scatters;
-    Ok(Scene::new(camera, world, surfaces, lights, max_scatters, settings.strategy))
+    let scene = Scene::new(camera, world, surfaces, lights, max_scatters, settings.strategy);
+    Ok(Assembled { scene, gaps })
 }
 
 /// The camera of the settings.

@@ -8,6 +8,7 @@ use std::time::SystemTime;
 use glam::DAffine3;
 
 use super::embedded;
+use super::sequence::Gap;
 use super::settings::VolumeSettings;
 use crate::error::{Error, Progress, Result};
 use crate::volume::Volume;
@@ -32,6 +33,8 @@ pub(super) struct BuiltVolume {
     pub(super) volume: Arc<Volume>,
     /// Transform from the volume's own space to that of the file.
     pub(super) file_from_local: DAffine3,
+    /// Grids that this frame of a sequence lacks.
+    pub(super) gaps: Vec<Gap>,
 }
 
 /// A volume file whose grids are loaded when they are asked for.
@@ -139,6 +142,11 @@ impl VolumeFile {
     /// Directory of the file: its grids without their voxels.
     pub fn directory(&self) -> &Directory {
         &self.directory
+    }
+
+    /// Whether there is a grid of that name.
+    pub fn has_grid(&self, name: &str) -> bool {
+        self.directory.grids.iter().any(|grid| grid.name == name)
     }
 
     /// The grid of that name, loaded if it is not yet.

@@ -4,6 +4,7 @@ use glam::Vec3A;
 use serde::Serialize;
 
 use super::cache::{GridValues, PlacedGrid, VolumeCache, VolumeFile};
+use super::sequence::listed;
 use crate::error::{Progress, Result};
 use crate::math::Aabb;
 use crate::volume::grid::Histogram;
@@ -58,12 +59,15 @@ pub struct VoxelDescription {
     pub histogram: Histogram,
 }
 
-/// Describes a volume file; what is read of it stays in `cache`.
+/// Describes a volume file, or the largest file of a sequence; what is read of it stays in `cache`.
 ///
 /// # Errors
 /// The file cannot be read or a grid of it is damaged; names it.
 pub fn describe(name: &str, cache: &VolumeCache, progress: Progress) -> Result<FileDescription> {
-    let file = cache.file(name, progress)?;
+    let frames = listed(name)?;
+    let fullest = frames.as_ref().and_then(|(_, files)| files.fullest());
+    let name = fullest.map_or(name.to_owned(), |file| file.path.display().to_string());
+    let file = cache.file(&name, progress)?;
     let directory = file.directory();
     let metadata = directory.metadata.iter().map(|(k, v)| (k.clone(), v.to_string())).collect();
     let count = directory.grids.len().max(1) as f32;
@@ -72,7 +76,7 @@ pub fn describe(name: &str, cache: &VolumeCache, progress: Progress) -> Result<F
         grid(&file, index, info, &part)
     };
     let grids = directory.grids.iter().enumerate().map(describe_one).collect::<Result<_>>()?;
-    Ok(FileDescription { file: name.to_owned(), metadata, grids })
+    Ok(FileDescription { file: name, metadata, grids })
 }
 
 fn grid(

@@ -3,7 +3,8 @@
 use std::path::Path;
 
 use super::files::{self, BUILTIN};
-use super::guess::Note;
+use super::guess::{About, Note};
+use super::sequence::NumberedSet;
 use super::{Overrides, Settings, VolumeCache, apply, embedded, guess, parse};
 use crate::error::{Error, NO_PROGRESS, Progress, Result};
 
@@ -52,6 +53,9 @@ pub fn open(
         return scene(text, source, Path::new(""), overrides);
     }
     let path = Path::new(source);
+    if let Some(frames) = sequence_named(source)? {
+        return sequence(&frames, overrides, cache, progress);
+    }
     if source.starts_with(BUILTIN) || files::has_extension(path, "vdb") {
         let name = files::resolve(source, Path::new(""), source)?;
         let guess = guess::guess(&cache.file(&name, progress)?, progress)?;
@@ -59,12 +63,44 @@ pub fn open(
         return Ok(Opened { settings, notes: guess.notes });
     }
     if !files::has_extension(path, "toml") {
-        let reason = "expected a scene (.toml), a volume (.vdb), in the window a snapshot (.exr), \
-                      or the name of an embedded scene (builtin:torch)";
+        let reason = "expected a scene (.toml), a volume (.vdb), a folder of numbered volumes, in the \
+                      window a snapshot (.exr), or the name of an embedded scene (builtin:torch)";
         return Err(Error::unsupported(source, "", reason));
     }
     let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
     scene(&text, source, &files::folder_of(path)?, overrides)
+}
+
+/// The sequence that `source` names: a pattern, a file of a numbered set, or a folder of one.
+fn sequence_named(source: &str) -> Result<Option<NumberedSet>> {
+    let path = Path::new(source);
+    if path.is_dir() {
+        return NumberedSet::of_folder(path).map(Some);
+    }
+    if source.starts_with(BUILTIN) || !files::has_extension(path, "vdb") {
+        return Ok(None);
+    }
+    NumberedSet::of_name(&files::resolve(source, Path::new(""), source)?)
+}
+
+/// A bare sequence. What is guessed is guessed once, from the largest file, which shows most of
+/// what all of them hold.
+fn sequence(
+    set: &NumberedSet,
+    overrides: &Overrides,
+    cache: &VolumeCache,
+    progress: Progress,
+) -> Result<Opened> {
+    let name = set.fullest().display().to_string();
+    let mut guess = guess::guess(&cache.file(&name, progress)?, progress)?;
+    let mut settings = guess.settings;
+    for volume in &mut settings.volume {
+        volume.file = Some(set.pattern.spelling().display().to_string());
+        volume.name = set.pattern.short_name();
+    }
+    settings.time.frame = f64::from(set.frame);
+    guess.notes.push(Note::new(About::Sequence, set.in_words()));
+    Ok(Opened { settings: apply(&settings, overrides)?, notes: guess.notes })
 }
 
 fn scene(text: &str, source: &str, folder: &Path, overrides: &Overrides) -> Result<Opened> {

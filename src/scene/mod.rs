@@ -11,7 +11,7 @@
 //! - `check`, `rules`: errors in keys and values, for `parse`; `schema`, [`keys`]: the schema and
 //!   its keys.
 //! - [`settings`]: the settings struct; [`effect`]: toggles that change nothing in a scene.
-//! - `assemble`: settings to the scene that is rendered.
+//! - `assemble`: settings to the scene that is rendered; [`sequence`]: the file of each frame.
 //! - `guess`, `conventions`, `grid_names`, `role`: settings for a bare volume; `fit_camera`: its
 //!   camera.
 //! - `additions`: new lights and floors; `describe`: the contents of a volume file for people.
@@ -39,10 +39,11 @@ mod role;
 mod rules;
 mod save;
 mod schema;
+pub mod sequence;
 pub mod settings;
 
 pub use additions::{floor_under, new_light};
-pub use assemble::{assemble, camera};
+pub use assemble::{Assembled, assemble, assemble_frame, camera};
 pub use cache::VolumeCache;
 pub use conventions::{Program, upright};
 pub use describe::{FileDescription, GridDescription, VoxelDescription, describe};

@@ -17,6 +17,10 @@ pub(super) fn check_rules(settings: &Settings, source: &str) -> Result<()> {
         move |(key, reason): Fault| (format!("{prefix}.{key}"), reason)
     };
     camera(&settings.camera).map_err(|(key, reason)| fail((format!("camera.{key}"), reason)))?;
+    if settings.time.range.is_some_and(|[first, last]| first > last) {
+        let reason = "the first frame comes after the last".to_owned();
+        return Err(fail(("time.range".to_owned(), reason)));
+    }
     for (index, one) in settings.volume.iter().enumerate() {
         volume(one).map_err(items("volume", index)).map_err(fail)?;
     }
@@ -60,6 +64,9 @@ fn volume(volume: &VolumeSettings) -> Result<(), Fault> {
             return fault("file", "the name is empty; name a volume file");
         }
         _ => {}
+    }
+    if volume.frame_range.is_some_and(|[first, last]| first > last) {
+        return fault("frame_range", "the first frame comes after the last");
     }
     placement(volume)?;
     if volume.shape == Some(VolumeShape::Everywhere) {

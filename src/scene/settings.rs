@@ -11,6 +11,7 @@ mod film;
 mod light;
 mod or_default;
 mod surface;
+mod time;
 mod values;
 mod volume;
 
@@ -19,8 +20,9 @@ pub use emission::{EmissionMode, EmissionSettings, Normalize};
 pub use film::{EnvironmentSettings, FilmSettings, MAX_SEED, PathSettings};
 pub use light::{LightKind, LightSettings};
 pub use surface::{MaterialKind, MaterialSettings, SurfaceSettings, SurfaceShape};
+pub use time::{MAX_FRAME, TimeSettings};
 pub use values::{Albedo, Axis, Color, Extent, GridKey};
-pub use volume::{DensitySettings, PhaseSettings, RampKind, VolumeSettings, VolumeShape};
+pub use volume::{DensitySettings, Outside, PhaseSettings, RampKind, VolumeSettings, VolumeShape};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -35,6 +37,9 @@ pub struct Settings {
     pub camera: CameraSettings,
     /// The film: render size, seed and samples.
     pub film: FilmSettings,
+    /// Frames: which one is rendered, and those of the time line.
+    #[serde(skip_serializing_if = "is_default")]
+    pub time: TimeSettings,
     /// The length of paths.
     pub path: PathSettings,
     /// The sky: light from all directions.
@@ -50,4 +55,18 @@ pub struct Settings {
     pub surface: Vec<SurfaceSettings>,
     /// Which sampling strategies are on.
     pub strategy: Strategy,
+}
+
+impl Settings {
+    /// The seed of the picture: that of the film, which moves on with the frame where
+    /// `film.animate_seed` says so, so that the noise of a sequence does not stick to the screen.
+    pub fn picture_seed(&self) -> u64 {
+        let moved = if self.film.animate_seed { self.time.since_start() } else { 0 };
+        self.film.seed.wrapping_add_signed(moved) & MAX_SEED
+    }
+}
+
+/// Whether a table need not be written.
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }

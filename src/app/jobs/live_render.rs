@@ -438,8 +438,19 @@ pub fn same_shot(a: &Settings, b: &Settings) -> bool {
 
 /// Whether two settings are of the same things under the same light, wherever the camera is.
 pub fn same_matter(a: &Settings, b: &Settings) -> bool {
-    let Settings { camera: _, film: _, path, environment, volume, light, surface, strategy: _ } = a;
-    *path == b.path
+    let Settings {
+        camera: _,
+        film: _,
+        time,
+        path,
+        environment,
+        volume,
+        light,
+        surface,
+        strategy: _,
+    } = a;
+    time.whole_frame() == b.time.whole_frame()
+        && *path == b.path
         && *environment == b.environment
         && *volume == b.volume
         && *light == b.light

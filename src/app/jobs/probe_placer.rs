@@ -179,7 +179,7 @@ fn sampler(
     start: RenderStart,
     probes: Option<Arc<SceneProbes>>,
 ) -> Arc<dyn PixelSampler> {
-    let seed = built.settings.film.seed;
+    let seed = built.settings.picture_seed();
     Arc::new(Frame::with_probes(built.scene.clone(), start.size, seed, probes))
 }
 
@@ -204,9 +204,19 @@ fn same(a: &BuiltScene, b: &BuiltScene) -> bool {
 /// Whether two scenes would have the same probes with the same strategy.
 fn same_places(a: &BuiltScene, b: &BuiltScene) -> bool {
     // All keys are named, so that a new one cannot leave stale probes. The film has no part in the
-    // probes, the volumes are compared as they were built, and the strategy by its recipe.
-    let Settings { camera, film: _, path, environment, volume: _, light, surface, strategy: _ } =
-        &a.settings;
+    // probes, the volumes are compared as they were built at their frame, and the strategy by its
+    // recipe.
+    let Settings {
+        camera,
+        film: _,
+        time: _,
+        path,
+        environment,
+        volume: _,
+        light,
+        surface,
+        strategy: _,
+    } = &a.settings;
     // The target of the camera does not matter.
     let CameraSettings { position, target: _, up: _, fov_x: _ } = camera;
     *environment == b.settings.environment

@@ -146,7 +146,7 @@ fn stands(note: &Note, volume: &VolumeSettings, opened: &VolumeSettings) -> bool
             };
             of(volume) == of(opened)
         }
-        About::Light => true,
+        About::Light | About::Sequence => true,
     }
 }
 

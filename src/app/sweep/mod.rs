@@ -178,7 +178,7 @@ impl Sweep {
             scene,
             trials,
             size: quick_size(size),
-            seed: settings.film.seed,
+            seed: settings.picture_seed(),
             seconds: self.seconds,
             threads: self.threads,
             stop: stop.clone(),

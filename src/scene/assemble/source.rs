@@ -6,6 +6,7 @@ use glam::{Affine3A, DAffine3, Vec3A};
 use crate::error::{Error, Progress, Result};
 use crate::math::{Aabb, Rgb};
 use crate::scene::cache::{GridValues, PlacedGrid, VolumeFile};
+use crate::scene::sequence::Gap;
 use crate::scene::settings::{RampKind, VolumeSettings, VolumeShape};
 use crate::volume::Region;
 use crate::volume::field::{GridField, RgbField, ScalarField, grid_support};
@@ -17,6 +18,9 @@ use crate::volume::vdb::GridClass;
 /// of them.
 pub(super) struct GridSource<'a> {
     file: &'a VolumeFile,
+    /// Whether the file lacks a grid that other frames of its sequence have.
+    lacks: &'a dyn Fn(&str) -> Result<bool>,
+    gaps: Vec<Gap>,
     progress: Progress<'a>,
     file_from_local: Option<DAffine3>,
     bounds: Aabb,
@@ -44,10 +48,11 @@ impl<'a> VolumeSource<'a> {
         match self {
             Self::Shape(shape) => shape.scalar(grid, field),
             Self::Grids(grids) => match grids.place(grid, field)? {
-                (GridValues::Float(values), from_local) => {
+                None => Ok(ScalarField::Constant(0.0)),
+                Some((GridValues::Float(values), from_local)) => {
                     Ok(ScalarField::Grid(GridField::new(values, from_local)))
                 }
-                (GridValues::Vector(_), _) => {
+                Some((GridValues::Vector(_), _)) => {
                     let reason = format!("the grid \"{grid}\" holds vectors; name one of numbers");
                     Err(Error::invalid(grids.file.name(), field, reason))
                 }
@@ -61,10 +66,11 @@ impl<'a> VolumeSource<'a> {
         match self {
             Self::Shape(shape) => shape.scalar(grid, field).map(gray),
             Self::Grids(grids) => Ok(match grids.place(grid, field)? {
-                (GridValues::Float(values), from_local) => {
+                None => RgbField::Constant(Rgb::ZERO),
+                Some((GridValues::Float(values), from_local)) => {
                     gray(ScalarField::Grid(GridField::new(values, from_local)))
                 }
-                (GridValues::Vector(values), from_local) => {
+                Some((GridValues::Vector(values), from_local)) => {
                     RgbField::Grid(GridField::new(values, from_local))
                 }
             }),
@@ -73,9 +79,19 @@ impl<'a> VolumeSource<'a> {
 }
 
 impl<'a> GridSource<'a> {
-    pub(super) fn new(file: &'a VolumeFile, progress: Progress<'a>) -> Self {
-        let voxel = f32::INFINITY;
-        Self { file, progress, file_from_local: None, bounds: Aabb::EMPTY, voxel }
+    /// The grids of `file`, of which those that it `lacks` count as zero.
+    pub(super) fn new(
+        file: &'a VolumeFile,
+        lacks: &'a dyn Fn(&str) -> Result<bool>,
+        progress: Progress<'a>,
+    ) -> Self {
+        let (gaps, bounds, voxel) = (Vec::new(), Aabb::EMPTY, f32::INFINITY);
+        Self { file, lacks, gaps, progress, file_from_local: None, bounds, voxel }
+    }
+
+    /// The grids asked for that the file lacks.
+    pub(super) fn into_gaps(self) -> Vec<Gap> {
+        self.gaps
     }
 
     /// Transform from the volume's own space to that of the file.
@@ -93,7 +109,14 @@ impl<'a> GridSource<'a> {
         self.voxel.is_finite().then_some(self.voxel)
     }
 
-    fn place(&mut self, name: &str, field: &str) -> Result<(GridValues, Affine3A)> {
+    /// The values of a grid, and the transform to its index space from the volume's own; `None` for
+    /// a grid that the file lacks and that counts as zero.
+    fn place(&mut self, name: &str, field: &str) -> Result<Option<(GridValues, Affine3A)>> {
+        if (self.lacks)(name)? {
+            let (file, grid) = (self.file.name().to_owned(), name.to_owned());
+            self.gaps.push(Gap::Grid { file, grid });
+            return Ok(None);
+        }
         let grid = self.file.grid(name, field, self.progress)?;
         if grid.class == GridClass::LevelSet {
             let reason = format!(
@@ -107,7 +130,7 @@ impl<'a> GridSource<'a> {
         self.voxel = self.voxel.min(shortest_edge(&local_from_grid));
         let local_from_grid = local_from_grid.as_affine3a();
         self.bounds = self.bounds.union(&support(&grid).transformed(&local_from_grid));
-        Ok((grid.values, local_from_grid.inverse()))
+        Ok(Some((grid.values, local_from_grid.inverse())))
     }
 }
 

@@ -13,7 +13,10 @@ use crate::math::Rgb;
 use crate::scene::VolumeCache;
 use crate::scene::cache::{BuiltVolume, VolumeFile};
 use crate::scene::effect::emits;
-use crate::scene::settings::{Albedo, EmissionMode, Extent, Normalize, VolumeSettings};
+use crate::scene::sequence::{Gap, VolumeFrame, volume_frame};
+use crate::scene::settings::{
+    Albedo, EmissionMode, Extent, Normalize, Outside, TimeSettings, VolumeSettings,
+};
 use crate::volume::emission::{Blackbody, ColorRamp, Emission};
 use crate::volume::field::{RgbField, ScalarField};
 use crate::volume::world::Instance;
@@ -22,65 +25,94 @@ use crate::volume::{MediumProperties, Region, Volume};
 /// Edge of the cells that bound a file's grids, in voxels.
 const CELL_VOXELS: f32 = 4.0;
 
-/// Builds and places every volume; those that differ only in their placement are one.
+/// Builds and places every volume; those that differ only in their placement are one. A volume that
+/// shows nothing in this frame is left out. Gives what the frame lacks as well.
 pub(super) fn instances(
     volumes: &[VolumeSettings],
+    time: &TimeSettings,
     cache: &VolumeCache,
     progress: Progress,
-) -> Result<Vec<Instance>> {
+) -> Result<(Vec<Instance>, Vec<Gap>)> {
     let count = volumes.len().max(1) as f32;
-    let build_one = |(index, settings): (usize, &VolumeSettings)| {
+    let (mut instances, mut gaps) = (Vec::new(), Vec::new());
+    for (index, settings) in volumes.iter().enumerate() {
         let part = |fraction: f32| progress((index as f32 + fraction) / count);
         if !part(0.0) {
             return Err(Error::Cancelled);
         }
         let key = format!("volume.{index}");
-        let built = built(settings, &key, cache, &part)?;
-        let world_from_local = world_from_file(settings) * built.file_from_local.as_affine3a();
-        if !(world_from_local.is_finite() && world_from_local.inverse().is_finite()) {
-            let field = if settings.matrix.is_some() { "matrix" } else { "scale" };
-            let reason = "places the volume too small, too large or too far away to be drawn";
-            return Err(Error::invalid("", format!("{key}.{field}"), reason));
-        }
-        Ok(Instance::new(built.volume, world_from_local))
-    };
-    volumes.iter().enumerate().map(build_one).collect()
+        let frame = volume_frame(settings, time)?;
+        let built = built(settings, &frame, &key, cache, &part)?;
+        gaps.extend(frame.gap);
+        let Some(built) = built else { continue };
+        gaps.extend(built.gaps.iter().cloned());
+        instances.push(placed(built, settings, &key)?);
+    }
+    Ok((instances, gaps))
 }
 
+/// A volume in its place.
+fn placed(built: BuiltVolume, settings: &VolumeSettings, key: &str) -> Result<Instance> {
+    let world_from_local = world_from_file(settings) * built.file_from_local.as_affine3a();
+    if !(world_from_local.is_finite() && world_from_local.inverse().is_finite()) {
+        let field = if settings.matrix.is_some() { "matrix" } else { "scale" };
+        let reason = "places the volume too small, too large or too far away to be drawn";
+        return Err(Error::invalid("", format!("{key}.{field}"), reason));
+    }
+    Ok(Instance::new(built.volume, world_from_local))
+}
+
+/// A volume of a shape or of the file of its `frame`; `None` if that shows nothing.
 fn built(
     settings: &VolumeSettings,
+    frame: &VolumeFrame,
     key: &str,
     cache: &VolumeCache,
     progress: Progress,
-) -> Result<BuiltVolume> {
-    let file = match &settings.file {
+) -> Result<Option<BuiltVolume>> {
+    let file = match &frame.file {
         Some(name) => Some(cache.file(name, progress)?),
+        None if settings.file.is_some() => return Ok(None),
         None => None,
     };
     let unplaced = unplaced(settings);
     if let Some(known) = cache.built(&unplaced, file.as_ref()) {
-        return Ok(known);
+        return Ok(Some(known));
     }
-    let (volume, file_from_local) = match (&file, settings.shape) {
-        (Some(file), _) => from_file(file, &unplaced, key, progress)?,
+    let built = match (&file, settings.shape) {
+        (Some(file), _) => {
+            let fullest = frame.fullest.as_deref().filter(|name| *name != file.name());
+            let lacks = |grid: &str| match fullest {
+                Some(name) => {
+                    Ok(!file.has_grid(grid) && cache.file(name, progress)?.has_grid(grid))
+                }
+                None => Ok(false),
+            };
+            from_file(file, &unplaced, key, &lacks, progress)?
+        }
         (None, Some(shape)) => {
             let shape = ShapeSource::new(shape, &unplaced);
-            (from_shape(shape, &unplaced, key, progress)?, DAffine3::IDENTITY)
+            let volume = from_shape(shape, &unplaced, key, progress)?;
+            Some((volume, DAffine3::IDENTITY, Vec::new()))
         }
         (None, None) => {
             return Err(Error::invalid("", key, "a volume needs a file or a shape"));
         }
     };
+    let Some((volume, file_from_local, gaps)) = built else { return Ok(None) };
     let volume = Arc::new(volume);
-    let built = BuiltVolume { settings: unplaced, file, volume, file_from_local };
+    let built = BuiltVolume { settings: unplaced, file, volume, file_from_local, gaps };
     cache.keep(built.clone());
-    Ok(built)
+    Ok(Some(built))
 }
 
 /// The settings without what does not change the volume itself.
 fn unplaced(settings: &VolumeSettings) -> VolumeSettings {
     VolumeSettings {
         name: String::new(),
+        frame_offset: 0,
+        frame_range: None,
+        outside: Outside::default(),
         translate: [0.0; 3],
         rotate: [0.0; 3],
         scale: Extent::default(),
@@ -89,21 +121,27 @@ fn unplaced(settings: &VolumeSettings) -> VolumeSettings {
     }
 }
 
+/// A volume of the grids of a file, with its place in the file's space and the grids that it lacks;
+/// `None` if there is nothing in them.
 fn from_file(
     file: &VolumeFile,
     settings: &VolumeSettings,
     key: &str,
+    lacks: &dyn Fn(&str) -> Result<bool>,
     progress: Progress,
-) -> Result<(Volume, DAffine3)> {
-    let mut source = VolumeSource::Grids(GridSource::new(file, progress));
+) -> Result<Option<(Volume, DAffine3, Vec<Gap>)>> {
+    let mut source = VolumeSource::Grids(GridSource::new(file, lacks, progress));
     let properties = properties(&mut source, settings, key)?;
     let VolumeSource::Grids(grids) = source else {
         return Err(Error::invalid(file.name(), key, "the file has no grids"));
     };
+    if grids.bounds().is_empty() {
+        return Ok(None);
+    }
     let cell_size = Vec3A::splat(CELL_VOXELS);
     let voxel = grids.voxel();
     let volume = Volume::varying(grids.bounds(), properties, cell_size, voxel, progress)?;
-    Ok((volume, grids.file_from_local()))
+    Ok(Some((volume, grids.file_from_local(), grids.into_gaps())))
 }
 
 fn from_shape(

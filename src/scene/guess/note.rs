@@ -11,6 +11,8 @@ pub enum About {
     Emission,
     /// The light on a volume that emits none.
     Light,
+    /// The frames of a sequence.
+    Sequence,
 }
 
 /// A guess in words.
@@ -24,7 +26,7 @@ pub struct Note {
 
 impl Note {
     /// A guess about something.
-    pub(super) fn new(about: About, text: impl Into<String>) -> Self {
+    pub(in crate::scene) fn new(about: About, text: impl Into<String>) -> Self {
         Self { about, text: text.into() }
     }
 }

@@ -22,11 +22,14 @@ pub struct FilmSettings {
     /// Max samples per pixel, after which the picture is finished; 0 is no limit.
     #[schemars(extend("unit" = "samples"), range(min = 0, max = 4_294_967_295_u32))]
     pub spp: u32,
+    /// Whether each frame of a sequence has random numbers of its own (seed + number of the frame
+    /// on the time line). Otherwise the noise stays where it is from frame to frame.
+    pub animate_seed: bool,
 }
 
 impl Default for FilmSettings {
     fn default() -> Self {
-        Self { size: [960, 540], seed: 0, spp: 0 }
+        Self { size: [960, 540], seed: 0, spp: 0, animate_seed: true }
     }
 }
 

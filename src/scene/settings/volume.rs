@@ -3,8 +3,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::is_default;
 use super::or_default::or_default;
-use super::{Albedo, Axis, Color, EmissionSettings, Extent};
+use super::{Albedo, Axis, Color, EmissionSettings, Extent, MAX_FRAME};
 
 const HALF_SIZE: Extent = Extent::Uniform(1.0);
 const RADIUS: f32 = 1.0;
@@ -27,8 +28,19 @@ pub struct VolumeSettings {
     #[schemars(extend("default" = ""))]
     pub name: String,
     /// A volume file, relative to the scene file, or `builtin:NAME` for one that comes with
-    /// Flambeau.
+    /// Flambeau. `fire_####.vdb` or `fire_%04d.vdb` is a sequence, one file a frame.
     pub file: Option<String>,
+    /// The file's frame less that of the scene.
+    #[schemars(extend("unit" = "frames"), range(min = -MAX_FRAME, max = MAX_FRAME))]
+    #[serde(skip_serializing_if = "is_default")]
+    pub frame_offset: i32,
+    /// The first and the last frame of the files that are shown; absent, those on the disk.
+    #[schemars(extend("unit" = "frames", "default" = null))]
+    #[schemars(extend("minimum" = -MAX_FRAME, "maximum" = MAX_FRAME))]
+    pub frame_range: Option<[i32; 2]>,
+    /// What is shown before the first frame of the files and after the last.
+    #[serde(skip_serializing_if = "is_default")]
+    pub outside: Outside,
     /// A shape instead of a file, filled with the value 1 unless said otherwise.
     pub shape: Option<VolumeShape>,
 
@@ -101,6 +113,19 @@ pub struct VolumeSettings {
     #[schemars(extend("minimum" = 0, "maximum" = 4_294_967_295_u32, "default" = SEED))]
     #[schemars(extend("only" = {"shape": ["noise"]}))]
     pub seed: Option<u32>,
+}
+
+/// What a sequence of files shows before its first frame and after its last.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Outside {
+    /// The nearest frame.
+    #[default]
+    Hold,
+    /// The frames over and over.
+    Loop,
+    /// Nothing.
+    None,
 }
 
 /// A shape that is filled in place of the grids of a file.
@@ -192,8 +217,4 @@ or_default! {
         contrast: f32 = CONTRAST;
         seed: u32 = SEED;
     }
-}
-
-fn is_default<T: Default + PartialEq>(value: &T) -> bool {
-    *value == T::default()
 }

@@ -1,0 +1,110 @@
+//! The file that a volume shows in a frame.
+
+use std::fmt;
+
+use super::{Frames, FramesOnDisk, Pattern, Shown};
+use crate::error::Result;
+use crate::scene::settings::{TimeSettings, VolumeSettings};
+
+/// The file that a volume shows in a frame.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct VolumeFrame {
+    /// Name of the file; `None` for a shape, and where the sequence shows nothing.
+    pub file: Option<String>,
+    /// Name of the largest file of the sequence, if the volume is one.
+    pub fullest: Option<String>,
+    /// What the frame lacks.
+    pub gap: Option<Gap>,
+}
+
+/// Something that a frame of a sequence lacks.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Gap {
+    /// The file of the frame is missing.
+    Frame {
+        /// Name of the file.
+        file: String,
+        /// Number of the frame of the files.
+        frame: i32,
+        /// Number of the frame that is shown in its place, if there is one before.
+        held: Option<i32>,
+    },
+    /// A grid that other frames have is missing, and counts as zero.
+    Grid {
+        /// Name of the file.
+        file: String,
+        /// Name of the grid.
+        grid: String,
+    },
+}
+
+impl fmt::Display for Gap {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Frame { frame, held: Some(held), .. } => {
+                write!(f, "frame {frame} is missing; frame {held} is shown in its place")
+            }
+            Self::Frame { frame, held: None, .. } => {
+                write!(f, "frame {frame} is missing; nothing is shown in its place")
+            }
+            Self::Grid { grid, .. } => {
+                write!(f, "this frame has no grid \"{grid}\", which counts as zero")
+            }
+        }
+    }
+}
+
+impl Gap {
+    /// Name of the file that is missing or lacks a grid.
+    pub fn file(&self) -> &str {
+        match self {
+            Self::Frame { file, .. } | Self::Grid { file, .. } => file,
+        }
+    }
+}
+
+/// The frames that lie on the disk if `file` is the pattern of a sequence, `None` for other names.
+///
+/// # Errors
+/// The folder cannot be read or has no file of that pattern.
+pub fn listed(file: &str) -> Result<Option<(Pattern, FramesOnDisk)>> {
+    let Some(pattern) = Pattern::spelled(file) else { return Ok(None) };
+    let files = FramesOnDisk::of(&pattern)?;
+    Ok(Some((pattern, files)))
+}
+
+/// The file that `volume` shows at `time`.
+///
+/// # Errors
+/// As [`listed`].
+pub fn volume_frame(volume: &VolumeSettings, time: &TimeSettings) -> Result<VolumeFrame> {
+    let Some(name) = &volume.file else { return Ok(VolumeFrame::default()) };
+    let Some((pattern, files)) = listed(name)? else {
+        return Ok(VolumeFrame { file: Some(name.clone()), ..VolumeFrame::default() });
+    };
+    let frames = Frames { files: &files, range: volume.frame_range, outside: volume.outside };
+    let missing = |frame, held| {
+        Some(Gap::Frame { file: pattern.file(frame).display().to_string(), frame, held })
+    };
+    let (file, gap) = match frames.at(time.whole_frame().saturating_add(volume.frame_offset)) {
+        Shown::File(file) => (Some(file), None),
+        Shown::Held(frame, file) => (Some(file), missing(frame, Some(file.number))),
+        Shown::Missing(frame) => (None, missing(frame, None)),
+        Shown::Nothing => (None, None),
+    };
+    let name = |file: &super::FrameFile| file.path.display().to_string();
+    Ok(VolumeFrame { file: file.map(name), fullest: files.fullest().map(name), gap })
+}
+
+/// First and last frame of the time line: `time.range`, else the frames that the sequences of
+/// `volumes` have on the disk. `None` for a scene that does not change.
+pub fn time_range(volumes: &[VolumeSettings], time: &TimeSettings) -> Option<[i32; 2]> {
+    let of_volume = |volume: &VolumeSettings| {
+        // A folder that cannot be read is reported where the scene is built.
+        let (_, files) = listed(volume.file.as_deref()?).ok()??;
+        let range = volume.frame_range.unwrap_or_else(|| files.range());
+        Some(range.map(|frame| frame.saturating_sub(volume.frame_offset)))
+    };
+    let on_disk = volumes.iter().filter_map(of_volume);
+    time.range.or_else(|| on_disk.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]))
+}

@@ -1,0 +1,43 @@
+//! `[time]`.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// The largest number of a frame.
+pub const MAX_FRAME: i32 = 9_999_999;
+
+/// Frames: which one is rendered, and those of the time line.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
+pub struct TimeSettings {
+    /// Frames per second of the scene.
+    #[schemars(extend("unit" = "frames/s", "exclusiveMinimum" = 0.0, "maximum" = 1000.0))]
+    pub fps: f64,
+    /// The frame that is shown or rendered. Volumes use the nearest whole frame.
+    #[schemars(extend("unit" = "frames"), range(min = -MAX_FRAME, max = MAX_FRAME))]
+    pub frame: f64,
+    /// The first and the last frame of the time line; absent, those on the disk.
+    #[schemars(extend("unit" = "frames", "default" = null))]
+    #[schemars(extend("minimum" = -MAX_FRAME, "maximum" = MAX_FRAME))]
+    pub range: Option<[i32; 2]>,
+}
+
+impl Default for TimeSettings {
+    fn default() -> Self {
+        Self { fps: 24.0, frame: 1.0, range: None }
+    }
+}
+
+impl TimeSettings {
+    /// The whole frame nearest to [`TimeSettings::frame`].
+    pub fn whole_frame(&self) -> i32 {
+        self.frame.round() as i32
+    }
+
+    /// Number of frames from the beginning of the time line, which is frame 1 unless `range` says
+    /// otherwise, to the present one.
+    pub fn since_start(&self) -> i64 {
+        let first = self.range.map_or(1, |[first, _]| first);
+        i64::from(self.whole_frame()) - i64::from(first)
+    }
+}
