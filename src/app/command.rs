@@ -22,6 +22,9 @@ pub enum Command {
     Restart,
     /// Switch a sampling strategy on or off.
     Toggle(Toggle),
+    Play,
+    PreviousFrame,
+    NextFrame,
     FrameVolume,
     FitPicture,
     ZoomToPixels,
@@ -165,6 +168,17 @@ impl Command {
                 "Switch this strategy on or off. The picture converges to the same result; noise \
                  and render time change.",
             ),
+            C::Play => (
+                PLAIN,
+                Key::P,
+                "Play or stop",
+                "Play the frames of a sequence. Those without a picture are rendered first, to the \
+                 samples of the flipbook.",
+            ),
+            C::PreviousFrame => {
+                (PLAIN, Key::Comma, "Previous frame", "Go back one frame of a sequence.")
+            }
+            C::NextFrame => (PLAIN, Key::Period, "Next frame", "Go on one frame of a sequence."),
             C::FrameVolume => (
                 PLAIN,
                 Key::F,

@@ -13,6 +13,7 @@
 //! - `picture`: the picture and the input on it.
 //! - `compare`: two strategies side by side, errors against a reference.
 //! - `sweep`: every strategy tried on the shot and ranked.
+//! - `time_line`: the frames of a sequence, played from a flipbook.
 //! - `snapshots`: stored pictures in a strip.
 //! - `diagnostics`: cells over the picture and maps in its place.
 //! - `panels`: the column of settings.
@@ -28,6 +29,7 @@ mod picture;
 mod shell;
 mod snapshots;
 mod sweep;
+mod time_line;
 mod ui;
 
 pub use command::Command;
@@ -39,6 +41,7 @@ pub use jobs::live_render::LiveRender;
 pub use picture::ramp_color::color as ramp_color;
 pub use shell::{App, Options};
 pub use sweep::{Results, Sweep};
+pub use time_line::TimeLine;
 pub use ui::notices::{Level, Notice, Notices};
 
 use crate::error::{Error, Result};

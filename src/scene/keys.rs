@@ -146,6 +146,8 @@ mod tests {
                 "volume.N.file",
                 "volume.N.shape",
                 "volume.N.matrix",
+                "volume.N.frame_range",
+                "time.range",
                 "volume.N.emission.grid",
                 "volume.N.albedo.grid",
                 "surface.N.half_size",

@@ -94,6 +94,9 @@ fn meant_for(command: Command) -> MeantFor {
         | Command::PauseResume
         | Command::Restart
         | Command::Toggle(_)
+        | Command::Play
+        | Command::PreviousFrame
+        | Command::NextFrame
         | Command::FrameVolume
         | Command::ZoomToPixels
         | Command::ExposureUp

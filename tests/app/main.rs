@@ -18,6 +18,7 @@ mod start;
 mod story;
 mod surfaces;
 mod sweep;
+mod time_line;
 mod volume_panel;
 
 use std::path::{Path, PathBuf};

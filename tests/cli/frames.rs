@@ -31,8 +31,7 @@ fn every_frame_has_a_file_of_its_own() {
     assert!(!place.path("out.0001.npy").exists(), "nothing is rendered in vain");
 
     let still = ["--set", "film.animate_seed=false"];
-    let (code, _, stderr) =
-        render(&[&["--frames", "1-4", "--allow-missing"], &still[..]].concat());
+    let (code, _, stderr) = render(&[&["--frames", "1-4", "--allow-missing"], &still[..]].concat());
     assert_eq!(code, 0, "{stderr}");
     assert!(stderr.contains("fire_0002.vdb: this frame has no grid"), "{stderr}");
     assert!(stderr.contains("frame 3 is missing; frame 2 is shown"), "{stderr}");

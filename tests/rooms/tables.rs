@@ -62,7 +62,7 @@ const APP: Order = Order {
         &["picture"],
         &["compare"],
         &["sweep"],
-        &["snapshots"],
+        &["snapshots", "time_line"],
         &["diagnostics"],
         &["panels"],
         &["shell"],

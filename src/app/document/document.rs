@@ -198,11 +198,14 @@ impl Editor {
         self.name = Some(name.into());
     }
 
-    /// Ends a frame: records what changed. Whether anything did. A tracker that the edit leaves
+    /// Ends a frame of the window: records what changed. Whether anything did. The frame of the
+    /// scene is where one looks, not what one makes: going to another is no edit. A tracker that the edit leaves
     /// without what it needs gives way to the plain one.
     pub fn end_frame(&mut self) -> bool {
+        let is_elsewhere = self.document.settings.time.frame != self.before.settings.time.frame;
+        self.before.settings.time.frame = self.document.settings.time.frame;
         if self.document == self.before {
-            return false;
+            return is_elsewhere;
         }
         let strategy = &mut self.document.settings.strategy;
         if strategy.tracker_refusal().is_some() {
@@ -230,8 +233,10 @@ impl Editor {
 
     fn travel(&mut self, step: fn(&mut History<Document>, Document) -> Result<Document, Document>) {
         let present = std::mem::take(&mut self.document);
+        let frame = present.settings.time.frame;
         let (Ok(state) | Err(state)) = step(&mut self.history, present);
         self.document = state;
+        self.document.settings.time.frame = frame;
         self.before.clone_from(&self.document);
         self.gesture += 1;
     }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use glam::UVec2;
 
+use crate::scene::sequence::Gap;
 use crate::scene::{GridDescription, Note, Settings};
 use crate::transport::Scene;
 
@@ -18,6 +19,8 @@ pub struct BuiltScene {
     pub settings: Settings,
     /// The guesses made for a bare volume.
     pub notes: Vec<Note>,
+    /// What the frame of the scene lacks.
+    pub gaps: Vec<Gap>,
     /// Ready to sample.
     pub scene: Arc<Scene>,
 }

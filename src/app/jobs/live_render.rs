@@ -339,7 +339,7 @@ impl LiveRender {
             }
             (LoadJob::Open(_), Err(error)) => news.push(News::Failed(error.to_string())),
             (LoadJob::Build(settings), Err(error)) => {
-                self.refused = Some(settings);
+                self.refused = Some(*settings);
                 news.push(News::Refused(error.to_string()));
             }
         }
@@ -421,7 +421,7 @@ impl LiveRender {
         }
         self.building = Some((settings.clone(), Instant::now()));
         let start = self.next_start(size, news);
-        self.request = self.loader.request(LoadJob::Build(settings.clone()), Some(start));
+        self.request = self.loader.request(LoadJob::Build(Box::new(settings.clone())), Some(start));
         None
     }
 }

@@ -10,7 +10,7 @@ use super::mailbox::Mailbox;
 use super::probe_placer::ProbePlacer;
 use super::reopen::{self, Reopened};
 use crate::error::{Error, Progress, Result};
-use crate::scene::{self, Overrides, Settings, VolumeCache};
+use crate::scene::{self, Assembled, Overrides, Settings, VolumeCache};
 
 /// A job of the loader.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,7 +18,7 @@ pub enum LoadJob {
     /// Read a scene, a volume or a snapshot (a path or `builtin:NAME`) and build it.
     Open(String),
     /// Build these settings.
-    Build(Settings),
+    Build(Box<Settings>),
 }
 
 /// A report of the loader.
@@ -191,10 +191,11 @@ fn run(
             let opened = scene::open(source, &Overrides::default(), cache, progress)?;
             (opened.settings, opened.notes, None)
         }
-        LoadJob::Build(settings) => (settings.clone(), Vec::new(), None),
+        LoadJob::Build(settings) => ((**settings).clone(), Vec::new(), None),
     };
-    let scene = Arc::new(scene::assemble(&settings, cache, progress)?);
-    Ok((BuiltScene { settings, notes, scene }, reopened))
+    let Assembled { scene, gaps } = scene::assemble_frame(&settings, cache, progress)?;
+    let scene = Arc::new(scene);
+    Ok((BuiltScene { settings, notes, gaps, scene }, reopened))
 }
 
 /// Adds the grids of the files of `settings` that `grids` does not have yet, and reads those that
@@ -244,7 +245,7 @@ mod tests {
         for seed in 0..50 {
             let mut settings = Settings::default();
             settings.film.seed = seed;
-            loader.request(LoadJob::Build(settings), None);
+            loader.request(LoadJob::Build(Box::new(settings)), None);
         }
         loop {
             let outcome = wait(&loader);

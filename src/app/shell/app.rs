@@ -26,6 +26,7 @@ use crate::app::picture::region::PictureRegion;
 use crate::app::picture::viewport::Viewport;
 use crate::app::snapshots::Snapshots;
 use crate::app::sweep::Sweep;
+use crate::app::time_line::TimeLine;
 use crate::app::ui::notices::Notices;
 use crate::app::ui::theme;
 use crate::error::Result;
@@ -56,6 +57,7 @@ pub struct App {
     pub(super) live_render: LiveRender,
     pub(super) compare: CompareState,
     pub(super) sweep: Sweep,
+    pub(super) time_line: TimeLine,
     pub(super) viewport: Viewport,
     pub(super) diagnostics: Diagnostics,
     pub(super) gizmo: Gizmo,
@@ -105,6 +107,7 @@ impl App {
                 versus: None,
             },
             sweep: Sweep::new(options.threads),
+            time_line: TimeLine::default(),
             viewport: Viewport::default(),
             diagnostics: Diagnostics::new(&pool),
             gizmo: Gizmo::default(),
@@ -150,6 +153,11 @@ impl App {
     /// Sweep of all strategies on the shot.
     pub fn sweep(&self) -> &Sweep {
         &self.sweep
+    }
+
+    /// Frames of the scene, and the pictures kept of them.
+    pub fn time_line(&self) -> &TimeLine {
+        &self.time_line
     }
 
     /// The messages shown.

@@ -27,6 +27,7 @@ impl App {
         self.save_waiting(&ctx);
         self.update_snapshots(&ctx);
         self.editor.begin_frame(&ctx);
+        self.update_time_line(&ctx);
         let mut commands = Command::pressed(&ctx);
         if self.is_asking() {
             // The key closes what is open in front.

@@ -37,7 +37,8 @@ impl App {
         if !self.chrome.folded && !self.chrome.full_screen {
             self.panel_column(ui, plain, commands);
         }
-        let area = egui::CentralPanel::no_frame().show(ui, |ui| self.picture_area(ui)).inner;
+        let area =
+            egui::CentralPanel::no_frame().show(ui, |ui| self.picture_area(ui, commands)).inner;
         help::show(ui.ctx(), &mut self.chrome.help);
         self.palette_window(ui, commands);
         if let Some(path) = reopened {
@@ -100,7 +101,7 @@ impl App {
 
     /// The picture with the bars that come and go at its edges. The film takes the whole area, so
     /// that a bar never restarts the render. What the bars leave of it.
-    fn picture_area(&mut self, ui: &mut Ui) -> Rect {
+    fn picture_area(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) -> Rect {
         let area = ui.available_size() * ui.pixels_per_point();
         let area = UVec2::new(area.x.round() as u32, area.y.round() as u32);
         if let Some(wait) = self.viewport.resize(area, self.largest) {
@@ -109,6 +110,7 @@ impl App {
         if !self.chrome.full_screen {
             self.start_row(ui);
             self.strip_row(ui);
+            self.time_row(ui, commands);
         }
         self.path_bar_row(ui);
         drop_row(ui);
@@ -173,6 +175,9 @@ impl App {
                 Some(map) => Shown::One(map.picture.clone(), map.look),
                 None => Shown::One(snapshot.clone(), look),
             };
+        }
+        if let Some(shown) = self.flipbook_shown(ctx) {
+            return shown;
         }
         let Some(picture) = self.live_render.picture() else { return Shown::Nothing };
         let layer = |pictures: &[&Picture]| self.diagnostics.look(pictures, tone).unwrap_or(look);

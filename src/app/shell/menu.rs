@@ -9,7 +9,10 @@ use crate::app::ui::theme::color;
 const OPEN: [Command; 2] = [Command::Open, Command::OpenPath];
 const FILE: [&[Command]; 2] =
     [&[Command::SaveExr, Command::SavePng, Command::SaveScene], &[Command::Quit]];
-const RENDER: [&[Command]; 1] = [&[Command::PauseResume, Command::Restart]];
+const RENDER: [&[Command]; 2] = [
+    &[Command::PauseResume, Command::Restart],
+    &[Command::Play, Command::PreviousFrame, Command::NextFrame],
+];
 const VIEW: [&[Command]; 5] = [
     &[Command::FrameVolume, Command::FitPicture, Command::ZoomToPixels, Command::GoToPicture],
     &[Command::AutoExposure, Command::ExposureUp, Command::ExposureDown],

@@ -6,7 +6,7 @@
 //! - `bars`, `unsaved_bar`, `start`, `status`: rows that come and go, and the status line.
 //! - `paths`, `file_requests`, `save`, `export`, `opened`: choosing, opening and writing files.
 //! - `guard`, `unsaved`: no change of the scene is lost unasked.
-//! - `measures`, `snapshots`, `sweep`, `view`: where the window meets those features.
+//! - `measures`, `snapshots`, `sweep`, `time_line`, `view`: where the window meets those features.
 //! - `preferences`: what the window keeps between runs, and where.
 //! - `frame_stats`: what the window costs (`FLAMBEAU_FRAME_STATS=FILE`).
 
@@ -35,6 +35,7 @@ mod snapshots;
 mod start;
 mod status;
 mod sweep;
+mod time_line;
 mod unsaved;
 mod unsaved_bar;
 mod view;

@@ -58,14 +58,20 @@ impl UnsavedChanges {
 
     /// Whether `settings` have changes that no file has. Strategies are tried on and off all the
     /// time and change no picture, and a film that follows the window has no size of its own.
-    /// Moving the camera in an embedded scene, or in a bare volume, is no change to save yet.
+    /// Moving the camera in an embedded scene, or in a bare volume, is no change to save yet, nor is
+    /// another frame of the time line.
     pub(super) fn differs_from(&self, settings: &Settings, keep_size: bool) -> bool {
         let mut film = self.saved.film;
         if !keep_size {
             film.size = settings.film.size;
         }
         let is_moved = self.is_own && self.saved.camera != settings.camera;
-        film != settings.film || is_moved || !same_matter(&self.saved, settings)
+        let mut saved = self.saved.clone();
+        saved.time.frame = settings.time.frame;
+        film != settings.film
+            || is_moved
+            || saved.time != settings.time
+            || !same_matter(&saved, settings)
     }
 }
 
@@ -86,6 +92,8 @@ mod tests {
             "strategies and the window's size are none"
         );
         assert!(unsaved.differs_from(&settings, true));
+        settings.time.frame = 7.0;
+        assert!(!unsaved.differs_from(&settings, false), "nor is another frame");
         settings.camera.fov_x += 1.0;
         assert!(unsaved.differs_from(&settings, false));
         let path = Path::new("torch.toml");

@@ -183,7 +183,7 @@ mod tests {
             (5, Some(4), Some(2), None),
             (1, Some(2), Some(4), None),
             (-1, Some(2), Some(2), None),
-            (i32::MAX, Some(4), Some(3), None),
+            (i32::MAX, Some(4), Some(4), None),
         ] {
             assert_eq!(shown(Outside::Hold, None, frame), hold, "{frame}");
             assert_eq!(shown(Outside::Loop, None, frame), looped, "{frame}");

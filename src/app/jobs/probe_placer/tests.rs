@@ -48,7 +48,7 @@ impl Scenes {
     fn build(&self) -> BuiltScene {
         let scene = assemble(&self.settings, &self.cache, NO_PROGRESS).unwrap();
         let scene = Arc::new(scene);
-        BuiltScene { settings: self.settings.clone(), notes: Vec::new(), scene }
+        BuiltScene { settings: self.settings.clone(), notes: Vec::new(), gaps: Vec::new(), scene }
     }
 }
 

@@ -1,0 +1,96 @@
+//! The time line: sequences opened, scrubbed, stepped through and played from the flipbook.
+
+use egui_kittest::kittest::Queryable;
+
+use super::*;
+
+/// A window on a set of four numbered volumes, of which the third is missing; on a small film.
+fn window() -> Option<Window> {
+    let folder = tempfile::tempdir().unwrap();
+    let torch = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/torch_hd.vdb");
+    for frame in [1, 2, 4] {
+        std::fs::copy(torch, folder.path().join(format!("fire_{frame:04}.vdb"))).unwrap();
+    }
+    let scene = folder.path().join("scene.toml");
+    let text = "[film]\nsize = [48, 32]\nspp = 2\n[[volume]]\nfile = 'fire_####.vdb'\n\
+                emission = { mode = 'blackbody', kelvin_scale = 1000 }\n";
+    std::fs::write(&scene, text).unwrap();
+    let mut window = Window::start(folder, &scene)?;
+    window.click(Role::Button, "Fixed");
+    Some(window)
+}
+
+fn frame(window: &Window) -> f64 {
+    window.document().settings.time.frame
+}
+
+#[test]
+fn frames_are_stepped_through_by_keys_and_by_the_track() {
+    let Some(mut window) = window() else { return };
+    assert!(window.has("of 1–4"));
+    window.press(Modifiers::NONE, Key::Period);
+    assert_eq!(frame(&window), 2.0);
+    window.press(Modifiers::NONE, Key::Period);
+    window.until_it_says("frame 3 is missing; frame 2 is shown in its place");
+    window.press(Modifiers::NONE, Key::Comma);
+    window.press(Modifiers::NONE, Key::Comma);
+    window.press(Modifiers::NONE, Key::Comma);
+    assert_eq!(frame(&window), 4.0, "around the end");
+    assert!(!window.has("is missing"));
+    let track = window.harness.get_by_role_and_label(Role::Slider, "Time line");
+    track.focus();
+    window.harness.step();
+    window.press(Modifiers::NONE, Key::ArrowLeft);
+    assert_eq!(frame(&window), 3.0);
+}
+
+/// Going to another frame is no edit: there is nothing to undo and nothing to save, and what is
+/// undone leaves the frame alone.
+#[test]
+fn another_frame_is_no_edit() {
+    let Some(mut window) = window() else { return };
+    let (edit, unsaved) =
+        (window.app().editor().undo_name().map(str::to_owned), window.app().has_unsaved_changes());
+    window.press(Modifiers::NONE, Key::Period);
+    assert_eq!(window.app().editor().undo_name().map(str::to_owned), edit);
+    assert_eq!(window.app().has_unsaved_changes(), unsaved);
+    window.press(Modifiers::NONE, Key::Num1);
+    window.press(Modifiers::COMMAND, Key::Z);
+    assert_eq!(frame(&window), 2.0);
+}
+
+#[test]
+fn frames_are_rendered_once_and_played_from_the_flipbook() {
+    let Some(mut window) = window() else { return };
+    window.press(Modifiers::NONE, Key::P);
+    window.until("all frames are in the flipbook", |app| app.time_line().flipbook.len() == 4);
+    assert!(window.app().time_line().is_playing());
+    window.until("the flipbook plays", |app| app.time_line().is_passing());
+    let stands = frame(&window);
+    let start = Instant::now();
+    let mut seen = std::collections::BTreeSet::new();
+    while seen.len() < 4 {
+        window.harness.step();
+        seen.insert(window.app().time_line().shown(0));
+        assert!(start.elapsed() < PATIENCE, "it stands at {seen:?}");
+    }
+    assert_eq!(frame(&window), stands, "the scene need not be built for that");
+    window.click(Role::Button, "Stop");
+    assert!(!window.app().time_line().is_playing());
+
+    // An edit makes the pictures worthless; another exposure does not.
+    window.press(Modifiers::NONE, Key::E);
+    assert_eq!(window.app().time_line().flipbook.len(), 4);
+    window.press(Modifiers::NONE, Key::Num1);
+    assert!(window.app().time_line().flipbook.len() <= 1);
+}
+
+#[test]
+fn both_sides_of_a_comparison_are_played() {
+    let Some(mut window) = window() else { return };
+    window.press(Modifiers::NONE, Key::C);
+    window.press(Modifiers::NONE, Key::P);
+    window.until("all frames are in the flipbook", |app| app.time_line().flipbook.len() == 4);
+    let pictures = |app: &App| app.time_line().flipbook.get(2).map(<[_]>::len);
+    assert_eq!(pictures(window.app()), Some(2));
+}
