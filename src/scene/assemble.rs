@@ -66,6 +66,16 @@ pub fn assemble_frame(
     Ok(Assembled { scene, gaps })
 }
 
+/// Reads and builds the volumes of the settings at their frame, so that they are there when the
+/// scene goes to it. They stay in `cache` as far as there is room.
+///
+/// # Errors
+/// The errors of [`assemble_frame`].
+pub fn prefetch(settings: &Settings, cache: &VolumeCache, progress: Progress) -> Result<()> {
+    volumes::instances(&settings.volume, &settings.time, cache, progress)?;
+    Ok(())
+}
+
 /// The camera of the settings.
 ///
 /// # Errors

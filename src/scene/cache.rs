@@ -19,7 +19,10 @@ use crate::volume::vdb::{Directory, GridClass, GridInfo, VdbValues};
 #[derive(Default)]
 pub struct VolumeCache {
     files: Mutex<HashMap<String, Arc<VolumeFile>>>,
+    /// The volumes, those that were used last at the end.
     volumes: Mutex<Vec<BuiltVolume>>,
+    /// Bytes that frames which no scene shows may take.
+    room: usize,
 }
 
 /// A volume as it was built, before it is placed.
@@ -71,6 +74,22 @@ pub enum GridValues {
 }
 
 impl VolumeCache {
+    /// A cache with room for so many bytes of frames which no scene shows, so that going back and
+    /// forth on the time line need not read them again.
+    pub fn with_room(room: usize) -> Self {
+        Self { room, ..Self::default() }
+    }
+
+    /// Bytes that frames which no scene shows may take.
+    pub fn room(&self) -> usize {
+        self.room
+    }
+
+    /// Memory of the grids of all volumes that are kept, in bytes.
+    pub fn bytes(&self) -> usize {
+        locked(&self.volumes).iter().map(BuiltVolume::bytes).sum()
+    }
+
     /// The volume file of that name (`builtin:NAME` for an embedded one), read again if it has
     /// changed.
     ///
@@ -111,10 +130,23 @@ impl VolumeCache {
         locked(&self.volumes).push(built);
     }
 
-    /// Lets go of every volume and file that the scene just built does not use.
+    /// Lets go of every volume and file that the scene just built does not use, but for other frames
+    /// of its sequences that there is room for, those used last first.
     pub(super) fn retain(&self, used: &[Arc<Volume>]) {
         let mut volumes = locked(&self.volumes);
-        volumes.retain(|built| used.iter().any(|volume| Arc::ptr_eq(volume, &built.volume)));
+        let is_used = |built: &BuiltVolume| used.iter().any(|v| Arc::ptr_eq(v, &built.volume));
+        let (shown, others): (Vec<_>, Vec<_>) = volumes.drain(..).partition(is_used);
+        let mut room = self.room;
+        let mut kept: Vec<BuiltVolume> = Vec::new();
+        for built in others.into_iter().rev() {
+            let is_frame = shown.iter().any(|one| one.settings == built.settings);
+            let bytes = built.bytes();
+            if is_frame && bytes <= room {
+                room -= bytes;
+                kept.push(built);
+            }
+        }
+        volumes.extend(kept.into_iter().rev().chain(shown));
         let in_use = |file: &Arc<VolumeFile>| {
             volumes.iter().filter_map(|v| v.file.as_ref()).any(|used| Arc::ptr_eq(used, file))
         };
@@ -123,6 +155,11 @@ impl VolumeCache {
 }
 
 impl BuiltVolume {
+    /// Memory of the grids of its file, in bytes.
+    fn bytes(&self) -> usize {
+        self.file.as_ref().map_or(0, |file| file.bytes())
+    }
+
     fn is_of(&self, settings: &VolumeSettings, file: Option<&Arc<VolumeFile>>) -> bool {
         let same_file = match (&self.file, file) {
             (Some(a), Some(b)) => Arc::ptr_eq(a, b),
@@ -137,6 +174,16 @@ impl VolumeFile {
     /// Name by which the file was requested.
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// Memory of the grids that were loaded, in bytes.
+    fn bytes(&self) -> usize {
+        let bytes = |values: &VdbValues| match values {
+            VdbValues::Float(grid) => grid.stats().memory_bytes,
+            VdbValues::Vec3(grid) => grid.stats().memory_bytes,
+            VdbValues::Unsupported(_) => 0,
+        };
+        locked(&self.grids).iter().flatten().map(bytes).sum()
     }
 
     /// Directory of the file: its grids without their voxels.

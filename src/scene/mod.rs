@@ -43,7 +43,7 @@ pub mod sequence;
 pub mod settings;
 
 pub use additions::{floor_under, new_light};
-pub use assemble::{Assembled, assemble, assemble_frame, camera};
+pub use assemble::{Assembled, assemble, assemble_frame, camera, prefetch};
 pub use cache::VolumeCache;
 pub use conventions::{Program, upright};
 pub use describe::{FileDescription, GridDescription, VoxelDescription, describe};

@@ -20,6 +20,8 @@ use crate::transport::prepare::SceneProbes;
 
 /// Time after which a build gives way to the next edit, and shows its progress.
 const BUILD_PATIENCE: Duration = Duration::from_millis(250);
+/// Bytes that volumes of frames which are not shown may take.
+const ROOM: usize = 1 << 30;
 
 /// An event since the last frame.
 pub enum News {
@@ -101,7 +103,8 @@ impl LiveRender {
         wake: impl Fn() + Clone + Send + Sync + 'static,
     ) -> Result<Self> {
         let session = Arc::new(Session::new(threads, wake.clone())?);
-        Self::with_cache(session, threads, Arc::default(), wake)
+        let cache = Arc::new(VolumeCache::with_room(ROOM));
+        Self::with_cache(session, threads, cache, wake)
     }
 
     /// A second render of the same volumes under another strategy. It shows nothing until it has
@@ -217,6 +220,11 @@ impl LiveRender {
     /// Whether the render is of the scene of these settings, on whatever film.
     pub fn renders(&self, settings: &Settings) -> bool {
         self.rendered().is_some_and(|rendered| same_scene(rendered, settings))
+    }
+
+    /// The volumes that were read.
+    pub fn cache(&self) -> &VolumeCache {
+        &self.cache
     }
 
     /// Whether sampling is paused.

@@ -10,7 +10,11 @@ use super::mailbox::Mailbox;
 use super::probe_placer::ProbePlacer;
 use super::reopen::{self, Reopened};
 use crate::error::{Error, Progress, Result};
+use crate::scene::sequence::time_range;
 use crate::scene::{self, Assembled, Overrides, Settings, VolumeCache};
+
+/// Frames that are read in advance, relative to the one that is shown, in their order.
+const PREFETCHED: [i32; 7] = [1, -1, 2, -2, 3, 4, 5];
 
 /// A job of the loader.
 #[derive(Clone, Debug, PartialEq)]
@@ -174,6 +178,7 @@ fn work(
             let _ = reports.send(LoadReport::Grids(Arc::new(grids.clone())));
             on_news();
         }
+        prefetch(&settings, cache, &still_latest);
     }
 }
 
@@ -196,6 +201,22 @@ fn run(
     let Assembled { scene, gaps } = scene::assemble_frame(&settings, cache, progress)?;
     let scene = Arc::new(scene);
     Ok((BuiltScene { settings, notes, gaps, scene }, reopened))
+}
+
+/// Reads the frames around that of `settings` while nothing else is asked for and there is room. One
+/// that cannot be read is reported when the scene goes to it.
+fn prefetch(settings: &Settings, cache: &VolumeCache, progress: Progress<'_>) {
+    let Some([first, last]) = time_range(&settings.volume, &settings.time) else { return };
+    let frame = settings.time.whole_frame();
+    let around = PREFETCHED.into_iter().map(|offset| frame.saturating_add(offset));
+    for frame in around.filter(|frame| (first..=last).contains(frame)) {
+        if !progress(0.0) || cache.bytes() > cache.room() {
+            return;
+        }
+        let mut settings = settings.clone();
+        settings.time.frame = f64::from(frame);
+        let _ = scene::prefetch(&settings, cache, progress);
+    }
 }
 
 /// Adds the grids of the files of `settings` that `grids` does not have yet, and reads those that

@@ -17,10 +17,17 @@ impl App {
         self.unsaved.differs_from(&document.settings, document.keep_size)
     }
 
-    /// A short name of what is open, with a star where it has unsaved changes.
+    /// A short name of what is open, with a star where it has unsaved changes, and its frame.
     pub(super) fn marked_title(&self) -> String {
         let mark = if self.has_unsaved_changes() { "* " } else { "" };
-        format!("{mark}{}", self.opened.title())
+        let frame = match self.time_line.range() {
+            Some(_) => {
+                let frame = self.editor.document.settings.time.whole_frame();
+                format!(", frame {}", self.time_line.shown(frame))
+            }
+            None => String::new(),
+        };
+        format!("{mark}{}{frame}", self.opened.title())
     }
 
     /// Says in the title of the window what is open and whether it was changed, and asks before a

@@ -102,11 +102,14 @@ impl App {
             let is_here = built.settings.time.frame == self.editor.document.settings.time.frame;
             built.gaps.iter().filter(|_| is_here).map(|gap| gap.to_string()).collect()
         });
+        let cache = self.live_render.cache();
+        let volumes = [cache.bytes(), cache.room()];
         let time = &mut self.editor.document.settings.time;
         let mut bar = TimeBar {
             time_line: &mut self.time_line,
             frame: &mut time.frame,
             fps: &mut time.fps,
+            volumes,
             gaps,
             commands,
         };

@@ -23,6 +23,9 @@ pub struct TimeBar<'a> {
     pub frame: &'a mut f64,
     /// Frames per second of the scene.
     pub fps: &'a mut f64,
+    /// Memory of the volumes of all frames that are kept, and how much frames may take that are not
+    /// shown, in bytes.
+    pub volumes: [usize; 2],
     /// What the present frame lacks, in words.
     pub gaps: Vec<String>,
     /// Commands that buttons ask for.
@@ -128,8 +131,12 @@ fn settings(ui: &mut Ui, bar: &mut TimeBar<'_>) -> bool {
     let frames = i64::from(last) - i64::from(first) + 1;
     let memory = mebibytes(flipbook.bytes());
     let text = format!("{} of {frames} frames, {memory}", flipbook.len());
-    ui.label(RichText::new(text).color(color::TEXT_DIM))
-        .on_hover_text("Frames whose pictures are kept, and the memory they take.");
+    let [volumes, room] = bar.volumes.map(mebibytes);
+    let help = format!(
+        "Frames whose pictures are kept, and the memory they take. Volumes read so far, also in \
+         advance: {volumes}; those of frames that are not shown may take {room}."
+    );
+    ui.label(RichText::new(text).color(color::TEXT_DIM)).on_hover_text(help);
     let samples = DragValue::new(&mut bar.time_line.samples).range(1..=1 << 20).suffix(" spp");
     let help = "Flipbook: samples per pixel after which playing goes on to the next frame. Frames \
                 that have a picture play at the pace of the scene.";
