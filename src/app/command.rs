@@ -25,6 +25,7 @@ pub enum Command {
     Play,
     PreviousFrame,
     NextFrame,
+    SaveFlipbook,
     FrameVolume,
     FitPicture,
     ZoomToPixels,
@@ -178,6 +179,12 @@ impl Command {
             C::PreviousFrame => {
                 (PLAIN, Key::Comma, "Previous frame", "Go back one frame of a sequence.")
             }
+            C::SaveFlipbook => (
+                CTRL_ALT,
+                Key::P,
+                "Save flipbook as PNGs…",
+                "Save the frames of the flipbook as displayed, each as a PNG with its number.",
+            ),
             C::NextFrame => (PLAIN, Key::Period, "Next frame", "Go on one frame of a sequence."),
             C::FrameVolume => (
                 PLAIN,

@@ -76,7 +76,8 @@ pub fn write(path: &Path, export: &Export<'_>) -> Result<()> {
     let words = wrapped(&export.words, shown.x as i32 - 2 * MARGIN)?;
     let rows: usize = export.tables.iter().map(|table| table.rows.len() + 1).sum();
     let blocks = usize::from(!words.is_empty()) + export.tables.len();
-    let text = (words.len() + rows) as i32 * LINE + (blocks as i32 + 1) * MARGIN / 2;
+    let margins = if blocks > 0 { blocks as i32 + 1 } else { 0 };
+    let text = (words.len() + rows) as i32 * LINE + margins * MARGIN / 2;
     let mut canvas = Canvas::new(shown + UVec2::new(0, legend + text.max(0) as u32));
     for (index, pane) in export.panes.iter().enumerate() {
         let left = index as u32 * (size.x * zoom + GAP);

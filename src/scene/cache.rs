@@ -49,7 +49,7 @@ pub struct VolumeFile {
 }
 
 /// Time and size of a file, which tell whether it has changed.
-type Stamp = (Option<SystemTime>, u64);
+pub type Stamp = (Option<SystemTime>, u64);
 
 /// A grid in memory with its place in the file's space.
 #[derive(Clone)]
@@ -267,7 +267,7 @@ impl PlacedGrid {
     }
 }
 
-fn stamp_of(name: &str) -> Result<Stamp> {
+pub(super) fn stamp_of(name: &str) -> Result<Stamp> {
     let metadata = std::fs::metadata(name).map_err(|e| Error::io(name, e))?;
     if metadata.is_dir() {
         return Err(Error::invalid(name, "", "this is a folder; name a volume file in it"));

@@ -3,7 +3,7 @@
 use glam::Vec3A;
 use serde::Serialize;
 
-use super::cache::{GridValues, PlacedGrid, VolumeCache, VolumeFile};
+use super::cache::{GridValues, PlacedGrid, Stamp, VolumeCache, VolumeFile, stamp_of};
 use super::sequence::listed;
 use crate::error::{Progress, Result};
 use crate::math::Aabb;
@@ -77,6 +77,15 @@ pub fn describe(name: &str, cache: &VolumeCache, progress: Progress) -> Result<F
     };
     let grids = directory.grids.iter().enumerate().map(describe_one).collect::<Result<_>>()?;
     Ok(FileDescription { file: name, metadata, grids })
+}
+
+/// Time and size of the file that [`describe`] would describe; `None` for embedded ones, and for
+/// those that are not there.
+pub fn stamp(name: &str) -> Option<Stamp> {
+    let frames = listed(name).ok()?;
+    let fullest = frames.as_ref().and_then(|(_, files)| files.fullest());
+    let name = fullest.map_or(name.to_owned(), |file| file.path.display().to_string());
+    stamp_of(&name).ok()
 }
 
 fn grid(

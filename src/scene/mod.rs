@@ -46,7 +46,7 @@ pub use additions::{floor_under, new_light};
 pub use assemble::{Assembled, assemble, assemble_frame, camera, prefetch};
 pub use cache::VolumeCache;
 pub use conventions::{Program, upright};
-pub use describe::{FileDescription, GridDescription, VoxelDescription, describe};
+pub use describe::{FileDescription, GridDescription, VoxelDescription, describe, stamp};
 pub use embedded::{DEFAULT_SCENE, scenes as embedded_scenes};
 pub use fingerprints::{fingerprints, volume_files};
 pub use fit_camera::fit_camera;

@@ -97,6 +97,7 @@ fn meant_for(command: Command) -> MeantFor {
         | Command::Play
         | Command::PreviousFrame
         | Command::NextFrame
+        | Command::SaveFlipbook
         | Command::FrameVolume
         | Command::ZoomToPixels
         | Command::ExposureUp

@@ -78,6 +78,15 @@ fn frames_are_rendered_once_and_played_from_the_flipbook() {
     window.click(Role::Button, "Stop");
     assert!(!window.app().time_line().is_playing());
 
+    window.press(Modifiers { alt: true, ..Modifiers::COMMAND }, Key::P);
+    let name = window.folder.path().join("torch");
+    window.type_path(name.to_str().unwrap());
+    window.until_it_says("Saved");
+    for frame in 1..=4 {
+        let file = window.folder.path().join(format!("torch.{frame:04}.png"));
+        assert_eq!(image::open(&file).unwrap().width() % 48, 0, "{}", file.display());
+    }
+
     // An edit makes the pictures worthless; another exposure does not.
     window.press(Modifiers::NONE, Key::E);
     assert_eq!(window.app().time_line().flipbook.len(), 4);
@@ -93,4 +102,22 @@ fn both_sides_of_a_comparison_are_played() {
     window.until("all frames are in the flipbook", |app| app.time_line().flipbook.len() == 4);
     let pictures = |app: &App| app.time_line().flipbook.get(2).map(<[_]>::len);
     assert_eq!(pictures(window.app()), Some(2));
+}
+
+/// A file that is written again is read again, and a frame that is added joins the time line.
+#[test]
+fn files_that_change_on_the_disk_are_read_again() {
+    let Some(mut window) = window() else { return };
+    window.until_finished();
+    let torch = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/campfire_hd.vdb");
+    let first = window.folder.path().join("fire_0001.vdb");
+    let voxels = |window: &Window| window.app().live_render().built().unwrap().scene.clone();
+    let before = voxels(&window);
+    std::fs::copy(torch, &first).unwrap();
+    window.until_it_says("have changed on the disk");
+    window.until("the file is read", |app| {
+        !std::sync::Arc::ptr_eq(&app.live_render().built().unwrap().scene, &before)
+    });
+    std::fs::copy(torch, window.folder.path().join("fire_0006.vdb")).unwrap();
+    window.until("there are six frames", |app| app.time_line().range() == Some([1, 6]));
 }

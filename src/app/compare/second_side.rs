@@ -209,6 +209,13 @@ impl SecondSide {
         }
     }
 
+    /// Builds the scene of the second side anew, whose files have changed.
+    pub fn reload(&mut self) {
+        if let Some(second_render) = &mut self.second_render {
+            second_render.reload();
+        }
+    }
+
     /// Discards the samples of the second side.
     pub fn restart(&mut self) {
         if let Some(second_render) = &mut self.second_render {

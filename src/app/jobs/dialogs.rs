@@ -21,6 +21,8 @@ pub enum Purpose {
     Reference,
     /// A file for a comparison as shown, with its figures.
     SaveComparison,
+    /// Files for the frames of the flipbook as shown.
+    SaveFlipbook,
 }
 
 impl Purpose {
@@ -33,6 +35,7 @@ impl Purpose {
             Self::SaveScene => Command::SaveScene,
             Self::Reference => Command::LoadReference,
             Self::SaveComparison => Command::SaveComparison,
+            Self::SaveFlipbook => Command::SaveFlipbook,
         }
     }
 
@@ -46,7 +49,7 @@ impl Purpose {
         match self {
             Self::Open | Self::Reference => None,
             Self::SaveExr => Some("exr"),
-            Self::SavePng | Self::SaveComparison => Some("png"),
+            Self::SavePng | Self::SaveComparison | Self::SaveFlipbook => Some("png"),
             Self::SaveScene => Some("toml"),
         }
     }
@@ -148,7 +151,9 @@ fn describe(purpose: Purpose, suggested: &Path) -> rfd::FileDialog {
             return dialog.add_filter("Converged pictures", &["exr", "npy"]);
         }
         Purpose::SaveExr => dialog.add_filter("OpenEXR", &["exr"]),
-        Purpose::SavePng | Purpose::SaveComparison => dialog.add_filter("PNG", &["png"]),
+        Purpose::SavePng | Purpose::SaveComparison | Purpose::SaveFlipbook => {
+            dialog.add_filter("PNG", &["png"])
+        }
         Purpose::SaveScene => dialog.add_filter("Scene", &["toml"]),
     }
     .set_file_name(suggested.file_name().unwrap_or_default().to_string_lossy())

@@ -72,6 +72,8 @@ pub struct LiveRender {
     extras: Extras,
     /// The pixels that get all samples.
     area: Option<Area>,
+    /// Whether files of the scene have changed since it was built.
+    is_stale: bool,
     /// Whether `built` is another render's, which is not what this one is to show.
     built_is_borrowed: bool,
     picture: Option<Arc<Picture>>,
@@ -147,6 +149,7 @@ impl LiveRender {
             held: false,
             extras: Extras::default(),
             area: None,
+            is_stale: false,
             built_is_borrowed: false,
             picture: None,
             resume: None,
@@ -283,6 +286,12 @@ impl LiveRender {
         self.set_paused(false);
     }
 
+    /// Builds the scene anew, whose files have changed; what is shown stays until that is done.
+    pub fn reload(&mut self) {
+        self.is_stale = true;
+        self.refused = None;
+    }
+
     /// Whether the picture shown is one of the latest render.
     pub fn is_current(&self) -> bool {
         match (&self.started, &self.picture) {
@@ -413,7 +422,7 @@ impl LiveRender {
     ) -> Option<Duration> {
         let is_same = |other: &Settings| same_scene(other, settings);
         let built = self.built.as_ref()?;
-        if is_same(&built.settings) {
+        if is_same(&built.settings) && !self.is_stale {
             if self.refused.take().is_some() {
                 news.push(News::Accepted);
             }
@@ -423,10 +432,12 @@ impl LiveRender {
             return None;
         }
         if let Some((asked, since)) = &self.building
+            && !self.is_stale
             && (is_same(asked) || since.elapsed() < BUILD_PATIENCE)
         {
             return (!is_same(asked)).then(|| BUILD_PATIENCE.saturating_sub(since.elapsed()));
         }
+        self.is_stale = false;
         self.building = Some((settings.clone(), Instant::now()));
         let start = self.next_start(size, news);
         self.request = self.loader.request(LoadJob::Build(Box::new(settings.clone())), Some(start));

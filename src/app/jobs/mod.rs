@@ -5,11 +5,13 @@
 //! - `probe_placer`: starts renders and places their probes meanwhile.
 //! - `mailbox`: one message to a thread, the latest wins; `background`: one value made anew
 //!   whenever what it is made from changes.
+//! - `file_watch`: whether files of the scene have changed.
 //! - `dialogs`, `film_file`: choosing files, and films on their way into them.
 
 pub mod background;
 pub mod built;
 pub mod dialogs;
+pub mod file_watch;
 pub mod film_file;
 pub mod live_render;
 pub mod mailbox;

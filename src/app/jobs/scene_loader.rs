@@ -2,6 +2,7 @@
 //! window. The latest request wins: a new one cancels the one at work, and only its outcome is
 //! reported.
 
+use std::collections::HashMap;
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering};
 use std::sync::{Arc, mpsc};
 
@@ -10,6 +11,7 @@ use super::mailbox::Mailbox;
 use super::probe_placer::ProbePlacer;
 use super::reopen::{self, Reopened};
 use crate::error::{Error, Progress, Result};
+use crate::scene::cache::Stamp;
 use crate::scene::sequence::time_range;
 use crate::scene::{self, Assembled, Overrides, Settings, VolumeCache};
 
@@ -138,7 +140,7 @@ fn work(
     reports: &mpsc::Sender<LoadReport>,
     on_news: &(dyn Fn() + Sync),
 ) {
-    let mut grids = Grids::new();
+    let mut described = DescribedFiles::default();
     while let Some(LoadRequest { number, job, start }) = shared.requests.take() {
         shared.percent.store(0, Ordering::Relaxed);
         let is_latest = || shared.latest.load(Ordering::Relaxed) == number;
@@ -174,8 +176,8 @@ fn work(
         let Some(settings) = settings else { continue };
         let still_latest = |_: f32| is_latest();
         // A failure here is reported when the grid is asked for.
-        if let Ok(true) = add_missing(&mut grids, &settings, cache, &still_latest) {
-            let _ = reports.send(LoadReport::Grids(Arc::new(grids.clone())));
+        if let Ok(true) = described.add_missing(&settings, cache, &still_latest) {
+            let _ = reports.send(LoadReport::Grids(Arc::new(described.grids.clone())));
             on_news();
         }
         prefetch(&settings, cache, &still_latest);
@@ -219,22 +221,35 @@ fn prefetch(settings: &Settings, cache: &VolumeCache, progress: Progress<'_>) {
     }
 }
 
-/// Adds the grids of the files of `settings` that `grids` does not have yet, and reads those that
-/// the scene itself does not need. Whether there were any.
-fn add_missing(
-    grids: &mut Grids,
-    settings: &Settings,
-    cache: &VolumeCache,
-    progress: Progress<'_>,
-) -> Result<bool> {
-    let mut added = false;
-    for name in settings.volume.iter().filter_map(|volume| volume.file.as_ref()) {
-        if !grids.contains_key(name) {
-            grids.insert(name.clone(), scene::describe(name, cache, progress)?.grids);
-            added = true;
+/// The grids of all files seen so far.
+#[derive(Default)]
+struct DescribedFiles {
+    grids: Grids,
+    /// Time and size of each file when it was described.
+    stamps: HashMap<String, Option<Stamp>>,
+}
+
+impl DescribedFiles {
+    /// Adds the grids of the files of `settings` that are not described as they are now, and reads
+    /// those that the scene itself does not need. Whether there were any.
+    fn add_missing(
+        &mut self,
+        settings: &Settings,
+        cache: &VolumeCache,
+        progress: Progress<'_>,
+    ) -> Result<bool> {
+        let mut added = false;
+        for name in settings.volume.iter().filter_map(|volume| volume.file.as_ref()) {
+            let stamp = scene::stamp(name);
+            if self.stamps.get(name) != Some(&stamp) {
+                let described = scene::describe(name, cache, progress)?;
+                self.grids.insert(name.clone(), described.grids);
+                self.stamps.insert(name.clone(), stamp);
+                added = true;
+            }
         }
+        Ok(added)
     }
-    Ok(added)
 }
 
 #[cfg(test)]

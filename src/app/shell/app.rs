@@ -19,6 +19,7 @@ use crate::app::diagnostics::Diagnostics;
 use crate::app::document::Editor;
 use crate::app::jobs::background::BackgroundPool;
 use crate::app::jobs::dialogs::Dialogs;
+use crate::app::jobs::file_watch::FileWatch;
 use crate::app::jobs::live_render::LiveRender;
 use crate::app::picture::display;
 use crate::app::picture::gizmo::Gizmo;
@@ -66,6 +67,7 @@ pub struct App {
     pub(super) opened: Opened,
     pub(super) unsaved: UnsavedChanges,
     pub(super) files: FileRequests,
+    pub(super) file_watch: FileWatch,
     pub(super) chrome: Chrome,
     pub(super) preferences: Preferences,
     /// The folder of what outlasts a run.
@@ -85,7 +87,7 @@ impl App {
         let stats = FrameStats::from_env();
         theme::apply(ctx);
         display::install(state);
-        let wake = ctx.clone();
+        let (wake, woken) = (ctx.clone(), ctx.clone());
         let mut live_render = LiveRender::new(options.threads, move || wake.request_repaint())?;
         let is_plain = options.source.is_none();
         let source = options.source.unwrap_or_else(|| DEFAULT_SCENE.to_owned());
@@ -116,6 +118,7 @@ impl App {
             opened: Opened { source, notes: Vec::new() },
             unsaved: UnsavedChanges::default(),
             files: FileRequests::new(options.dialogs),
+            file_watch: FileWatch::new(move || woken.request_repaint())?,
             chrome: Chrome::new(ctx, &preferences, is_plain, options.cleared),
             preferences,
             data_folder,

@@ -28,6 +28,7 @@ impl App {
             Command::Toggle(toggle) => self.switch(toggle),
             Command::Play => self.play_or_stop(),
             Command::PreviousFrame => self.step_frame(-1),
+            Command::SaveFlipbook => self.ask_to_save_flipbook(ctx),
             Command::NextFrame => self.step_frame(1),
             Command::FrameVolume => self.frame_volume(),
             Command::FitPicture => self.viewport.zoom = Default::default(),

@@ -108,6 +108,7 @@ impl App {
             ctx.request_repaint_after(wait.max(Duration::from_millis(1)));
         }
         self.take_in(ctx, news);
+        self.reload_changed_files();
         self.update_measures(ctx);
         self.update_sweep(ctx);
     }

@@ -11,7 +11,7 @@ const FILE: [&[Command]; 2] =
     [&[Command::SaveExr, Command::SavePng, Command::SaveScene], &[Command::Quit]];
 const RENDER: [&[Command]; 2] = [
     &[Command::PauseResume, Command::Restart],
-    &[Command::Play, Command::PreviousFrame, Command::NextFrame],
+    &[Command::Play, Command::PreviousFrame, Command::NextFrame, Command::SaveFlipbook],
 ];
 const VIEW: [&[Command]; 5] = [
     &[Command::FrameVolume, Command::FitPicture, Command::ZoomToPixels, Command::GoToPicture],

@@ -10,6 +10,8 @@ use crate::app::jobs::dialogs::DialogAnswer;
 use crate::app::jobs::live_render::News;
 use crate::app::picture::gizmo::Gizmo;
 use crate::app::ui::notices::{Level, Notice, Notices};
+use crate::scene;
+use crate::scene::sequence::Pattern;
 
 impl App {
     pub(super) fn take_in(&mut self, ctx: &Context, news: Vec<News>) {
@@ -27,6 +29,7 @@ impl App {
                     self.opened.source = self.name_of(source);
                     self.compare.versus = None;
                     self.compare.region.remove();
+                    self.watch_files();
                     if let Err(error) =
                         self.compare.reference.open(ctx, &full_name(&self.opened.source))
                     {
@@ -39,7 +42,10 @@ impl App {
                 }
                 News::Failed(text) => self.notices.failed(text),
                 News::Refused(text) => self.notices.refused(text),
-                News::Accepted => self.notices.clear(Level::Refused),
+                News::Accepted => {
+                    self.notices.clear(Level::Refused);
+                    self.watch_files();
+                }
                 News::Started(generation) => self.note_start(generation),
             }
         }
@@ -67,6 +73,27 @@ impl App {
         let dropped = ctx.input(|input| input.raw.dropped_files.last().cloned());
         if let Some(file) = dropped {
             self.take_dropped(ctx, file.path());
+        }
+    }
+
+    /// Watches the files that the scene reads, and the folders of its sequences.
+    fn watch_files(&mut self) {
+        let settings = &self.editor.document.settings;
+        // What cannot be listed is reported where the scene is built.
+        let mut paths = scene::volume_files(settings).unwrap_or_default();
+        let sequences = settings.volume.iter().filter_map(|volume| volume.file.as_deref());
+        let folders = sequences.filter_map(Pattern::spelled).map(|set| set.folder().to_owned());
+        paths.extend(folders);
+        self.file_watch.watch(paths);
+    }
+
+    /// Reads files of the scene again that have changed on the disk, with the look as it is.
+    pub(super) fn reload_changed_files(&mut self) {
+        if self.file_watch.has_changed() {
+            self.time_line.look_again();
+            self.live_render.reload();
+            self.compare.second_side.reload();
+            self.notices.done("Files of the scene have changed on the disk and are read again.");
         }
     }
 

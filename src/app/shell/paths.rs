@@ -74,6 +74,7 @@ impl App {
         let settings = live_render.rendered()?;
         match purpose {
             Purpose::Open | Purpose::Reference => None,
+            Purpose::SaveFlipbook => self.flipbook_content(ctx),
             Purpose::SaveComparison => Some(Content::View(Box::new(self.saved_view(ctx)))),
             Purpose::SaveExr => Some(Content::Exr {
                 film: live_render.session().snapshot(),

@@ -14,6 +14,7 @@ use crate::image::png;
 use crate::image::tone::Tone;
 use crate::render::picture::resolve;
 use crate::render::{Film, Picture};
+use crate::scene::sequence::Pattern;
 use crate::scene::{self, Settings};
 
 /// The content of a file to write.
@@ -47,6 +48,8 @@ pub enum Content {
     },
     /// A view with its figures.
     View(Box<SavedView>),
+    /// Views of frames with their numbers, each to a file of its own.
+    Frames(Vec<(i32, SavedView)>),
 }
 
 /// A save under way.
@@ -137,6 +140,18 @@ fn write(path: &Path, content: Content) -> Result<()> {
             })
         }
         Content::View(view) => view.write(path),
+        Content::Frames(frames) => {
+            let name = path.to_string_lossy();
+            let pattern = Pattern::spelled(&name).or_else(|| Pattern::spelled(&numbered(path)));
+            let file = |frame| pattern.as_ref().map_or(path.to_owned(), |set| set.file(frame));
+            frames.into_iter().try_for_each(|(frame, view)| view.write(&file(frame)))
+        }
         Content::Shown { picture, tone } => png::write(path, picture.size, &picture.pixels, tone),
     }
+}
+
+/// The path with a place for the number of a frame before its ending.
+fn numbered(path: &Path) -> String {
+    let ending = path.extension().unwrap_or_default().to_string_lossy();
+    path.with_extension(format!("####.{ending}")).to_string_lossy().into_owned()
 }

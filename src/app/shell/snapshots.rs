@@ -135,7 +135,11 @@ impl App {
                 let name = item.record.name.replace(['/', '\\', ':'], "-");
                 format!("{name}.{extension}").into()
             }
-            None => Path::new(&self.opened.title()).with_extension(extension),
+            None => {
+                let title = self.opened.short_title();
+                let number = if purpose == Purpose::SaveFlipbook { ".####" } else { "" };
+                format!("{title}{number}.{extension}").into()
+            }
         }
     }
 

@@ -6,8 +6,11 @@ use std::time::Instant;
 use egui::{Context, Ui};
 
 use super::app::App;
+use super::export::SavedView;
+use super::save::Content;
 use crate::app::command::Command;
 use crate::app::compare::second_side::CompareLayout;
+use crate::app::jobs::dialogs::Purpose;
 use crate::app::jobs::live_render::LiveRender;
 use crate::app::picture::look::Look;
 use crate::app::picture::viewport::Shown;
@@ -76,6 +79,12 @@ impl App {
         if !self.time_line.is_passing() && self.done_pictures().is_some() {
             return None;
         }
+        self.frame_shown(ctx, pictures)
+    }
+
+    /// The view of the pictures of a frame; `None` for maps, which are made of live ones only.
+    fn frame_shown(&self, ctx: &Context, pictures: &[Arc<Picture>]) -> Option<Shown> {
+        let document = &self.editor.document;
         let tone = document.tone;
         let second_side = &self.compare.second_side;
         match pictures {
@@ -91,6 +100,25 @@ impl App {
             }
             _ => None,
         }
+    }
+
+    /// Asks for a name for the frames of the flipbook, if there are any.
+    pub(super) fn ask_to_save_flipbook(&mut self, ctx: &Context) {
+        match self.time_line.flipbook.len() {
+            0 => self.notices.done("The flipbook is empty. Play a sequence to fill it."),
+            _ => self.ask(ctx, Purpose::SaveFlipbook),
+        }
+    }
+
+    /// The frames of the flipbook as they are shown; `None` where it is empty.
+    pub(super) fn flipbook_content(&self, ctx: &Context) -> Option<Content> {
+        let frames = self.time_line.flipbook.frames().filter_map(|(frame, pictures)| {
+            let shown = self.frame_shown(ctx, pictures)?;
+            let (names, legend) = (self.names_of(&shown), self.legend(&shown));
+            let (words, tables) = (Vec::new(), Vec::new());
+            Some((frame, SavedView { shown, names, legend, area: None, words, tables }))
+        });
+        Some(frames.collect::<Vec<_>>()).filter(|frames| !frames.is_empty()).map(Content::Frames)
     }
 
     /// The row of the time line, where the scene has one.

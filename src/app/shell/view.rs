@@ -12,12 +12,7 @@ impl App {
     /// The view on the screen.
     pub(super) fn saved_view(&self, ctx: &Context) -> SavedView {
         let shown = self.shown(ctx);
-        let names = match shown {
-            Shown::Wipe(..) | Shown::Beside(..) => {
-                report::side_titles(&self.compare, &self.editor.document)
-            }
-            Shown::One(..) | Shown::Nothing => Vec::new(),
-        };
+        let names = self.names_of(&shown);
         let legend = self.legend(&shown);
         SavedView {
             shown,
@@ -26,6 +21,16 @@ impl App {
             area: self.compare.second_side.region_figures().map(|region| region.area),
             words: report::sentences(&self.compare, &self.editor.document),
             tables: report::tables(&self.compare, self.looked_at().len()),
+        }
+    }
+
+    /// Names of the pictures that are shown, where there are two.
+    pub(super) fn names_of(&self, shown: &Shown) -> Vec<String> {
+        match shown {
+            Shown::Wipe(..) | Shown::Beside(..) => {
+                report::side_titles(&self.compare, &self.editor.document)
+            }
+            Shown::One(..) | Shown::Nothing => Vec::new(),
         }
     }
 
