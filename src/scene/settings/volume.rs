@@ -159,7 +159,8 @@ pub enum RampKind {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct DensitySettings {
-    /// The grid that density is read from.
+    /// The grid that density is read from. Of several grids of one name, `density[1]` is the
+    /// second.
     #[schemars(extend("default" = "density"))]
     pub grid: Option<String>,
     /// Extinction per unit length = scale * value of the grid. 0 makes the smoke invisible.
