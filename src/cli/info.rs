@@ -86,6 +86,10 @@ fn describe_grid(report: &mut InfoText, grid: &GridDescription, info: &GridInfo)
         report.row("bounds", bounds.unwrap_or_else(|| "empty".to_owned()));
         report.row("memory", mebibytes(voxels.memory_bytes));
     }
+    if let Some(taper) = &info.transform.taper {
+        let text = format!("slices widen by {} of the nearest a voxel of depth", taper.growth);
+        report.row("frustum", text);
+    }
     let map = &info.transform.index_to_world;
     for row in 0..3 {
         let axes = map.matrix3.row(row);

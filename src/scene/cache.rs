@@ -12,9 +12,9 @@ use super::settings::VolumeSettings;
 use super::{embedded, grid_address};
 use crate::error::{Error, Progress, Result};
 use crate::files::path_of;
-use crate::volume::Volume;
 use crate::volume::grid::{IndexBox, SparseGrid};
 use crate::volume::vdb::{Directory, GridClass, GridInfo, VdbValues};
+use crate::volume::{Taper, Volume};
 
 /// Volume files and the volumes built from them, shared by everything that builds scenes.
 #[derive(Default)]
@@ -62,8 +62,11 @@ pub struct PlacedGrid {
     pub class: GridClass,
     /// Voxels of the grid.
     pub values: GridValues,
-    /// Transform from the grid's index space to the file's world.
+    /// Transform from the grid's index space to the file's world; of a frustum from its spread
+    /// space.
     pub world_from_index: DAffine3,
+    /// The way from index space to spread space, of a frustum.
+    pub taper: Option<Taper>,
 }
 
 /// The voxels of a grid.
@@ -239,7 +242,13 @@ impl VolumeFile {
                 return Err(Error::unsupported(&self.name, field, reason));
             }
         };
-        Ok(PlacedGrid::new(self.address(index), info, values))
+        let grid = PlacedGrid::new(self.address(index), info, values);
+        let reaches_tip = grid.taper.zip(grid.bounds()).is_some_and(|(taper, b)| !taper.holds(&b));
+        if reaches_tip {
+            let reason = "it reaches behind the tip of its frustum; cut off that part";
+            return Err(Error::unsupported(&self.name, field, reason));
+        }
+        Ok(grid)
     }
 
     /// Address of the grid at `index`, by which [`VolumeFile::grid`] finds it.
@@ -271,8 +280,12 @@ impl PlacedGrid {
             GridValues::Vector(grid) => grid.origin(),
         };
         let file_from_stored = info.transform.index_to_world;
-        let world_from_index = file_from_stored * DAffine3::from_translation(origin.as_dvec3());
-        Self { name, class: info.class, values, world_from_index }
+        let taper = info.transform.taper.map(|taper| taper.rebased(origin));
+        let world_from_index = match taper {
+            Some(_) => file_from_stored,
+            None => file_from_stored * DAffine3::from_translation(origin.as_dvec3()),
+        };
+        Self { name, class: info.class, values, world_from_index, taper }
     }
 
     /// Box around the stored voxels in index space, both ends included; `None` if empty.

@@ -114,7 +114,9 @@ fn grid(
 }
 
 fn voxels(grid: &PlacedGrid) -> VoxelDescription {
-    let bounds = grid.bounds().map(|bounds| FileBox::around(&bounds, &grid.world_from_index));
+    let bounds = grid
+        .bounds()
+        .map(|bounds| FileBox::around(&bounds, &grid.world_from_index, grid.taper.as_ref()));
     let bounds = bounds.map(|bounds| [bounds.min.to_array(), bounds.max.to_array()]);
     match &grid.values {
         GridValues::Float(values) => {

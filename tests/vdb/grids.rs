@@ -14,13 +14,15 @@ pub struct Grid {
     pub voxels: Vec<(IVec3, f32)>,
     pub voxel_size: f64,
     pub translation: DVec3,
+    /// Taper and depth of a frustum over the box from -8 to 8, before scale and translation.
+    pub frustum: Option<[f64; 2]>,
 }
 
 impl Grid {
     /// A fog volume of voxels 0.1 a side.
     pub fn fog(name: &'static str, voxels: Vec<(IVec3, f32)>) -> Self {
         let (class, kind) = ("fog volume", "float");
-        Self { name, class, kind, voxels, voxel_size: 0.1, translation: DVec3::ZERO }
+        Self { name, class, kind, voxels, voxel_size: 0.1, translation: DVec3::ZERO, frustum: None }
     }
 }
 
@@ -65,6 +67,11 @@ fn body(grid: &Grid) -> Vec<u8> {
     bytes.u32(2);
     bytes.u32(1);
     ["class", "string", grid.class].iter().for_each(|text| bytes.text(text));
+    if let Some(shape) = grid.frustum {
+        bytes.text("NonlinearFrustumMap");
+        let corners = [-8.0_f64, -8.0, -8.0, 8.0, 8.0, 8.0];
+        corners.iter().chain(&shape).for_each(|number| bytes.0.extend(number.to_le_bytes()));
+    }
     bytes.text("UniformScaleTranslateMap");
     let derived = [DVec3::ONE; 4];
     for vector in [grid.translation, DVec3::splat(grid.voxel_size)].iter().chain(&derived) {

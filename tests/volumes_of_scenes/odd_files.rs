@@ -6,6 +6,7 @@ use std::path::Path;
 use flambeau::error::{NO_PROGRESS, Result};
 use flambeau::scene::settings::{EmissionMode, Settings};
 use flambeau::scene::{self, Overrides, Role, VolumeCache};
+use flambeau::volume::CoefficientBounds;
 use glam::{DVec3, IVec3, Vec3A};
 
 use crate::grids::{Grid, ball, file};
@@ -215,6 +216,62 @@ fn a_scene_with_a_placement_of_its_own_stays_where_it_is() {
     assert!(near.size().abs_diff_eq(Vec3A::splat(0.021), 1e-6), "{near:?}");
 }
 
+#[test]
+fn voxels_of_a_frustum_lie_where_its_map_says() {
+    let values = |voxel: IVec3| 1.0 + 0.1 * voxel.x as f32 + 0.05 * voxel.z as f32;
+    for taper in [0.5, 2.0] {
+        let voxels = ball(IVec3::ZERO, 6, 1.0).into_iter().map(|(at, _)| (at, values(at)));
+        let grid = Grid {
+            voxel_size: 2.0,
+            translation: DVec3::new(0.0, 0.0, 1.0),
+            frustum: Some([taper, 3.0]),
+            ..Grid::fog("density", voxels.collect())
+        };
+        let (_folder, _, opened) = open(&[grid]);
+        let opened = opened.unwrap();
+        let scene = build(&opened.settings);
+        let scale = opened.settings.volume[0].density.scale.rgb().x;
+        for (voxel, _) in ball(IVec3::ZERO, 5, 1.0) {
+            let depth = f64::from(voxel.z + 8) / 16.0;
+            let widened = (1.0 + (1.0 / taper - 1.0) * depth) / 16.0;
+            let [x, y] = [voxel.x, voxel.y].map(|c| f64::from(c) * widened * 2.0);
+            let world = DVec3::new(x, y, depth * 3.0 * 2.0 + 1.0).as_vec3a();
+            let found = mu_t(&scene, world) / scale;
+            assert!((found - values(voxel)).abs() < 1e-3, "{found} at {voxel}");
+        }
+        check_majorants(&scene);
+    }
+}
+
+/// Holds the majorants of a scene's first volume against what is in their cells.
+fn check_majorants(scene: &flambeau::transport::Scene) {
+    let volume = scene.world.instances()[0].volume();
+    let CoefficientBounds::Cells(cells) = volume.bounds() else { panic!("no cells") };
+    let mut met = 0;
+    cells.for_each_cell(|_, bounds, majorant| {
+        for n in 0..64 {
+            let t = Vec3A::new((n & 3) as f32, (n >> 2 & 3) as f32, (n >> 4) as f32) / 3.0;
+            let inside = volume.properties().mu_t(bounds.min + t * bounds.size()).x;
+            assert!(inside <= majorant.mu_t * 1.0001, "{inside} over {majorant:?}");
+            met += usize::from(inside > 0.0);
+        }
+    });
+    assert!(met > 100, "{met}");
+}
+
+#[test]
+fn a_frustum_is_not_looked_at_behind_its_tip() {
+    let mut voxels = ball(IVec3::ZERO, 6, 1.0);
+    let frustum = Some([0.5, 3.0]);
+    let open_frustum = |voxels: &[(IVec3, f32)]| {
+        open(&[Grid { frustum, ..Grid::fog("density", voxels.to_vec()) }]).2
+    };
+    assert!(open_frustum(&voxels).is_ok());
+    voxels.push((IVec3::new(0, 0, -30), 1.0));
+    let error = open_frustum(&voxels).unwrap_err().to_string();
+    assert!(error.contains("tip of its frustum"), "{error}");
+}
+
 #[cfg(unix)]
 #[test]
 fn names_that_are_no_text_are_opened_saved_and_found_again() {
@@ -230,7 +287,7 @@ fn names_that_are_no_text_are_opened_saved_and_found_again() {
     let name = flambeau::files::name_of(&path);
     let settings = scene::load(&name).unwrap();
     build(&settings);
-    assert_eq!(scene::volume_files(&settings).unwrap(), [path.clone()]);
+    assert_eq!(scene::volume_files(&settings).unwrap(), std::slice::from_ref(&path));
     assert!(scene::fingerprints(&settings, NO_PROGRESS).is_ok());
     let saved = odd.join(std::ffi::OsStr::from_bytes(b"sc\xe8ne.toml"));
     scene::save(&settings, &saved).unwrap();

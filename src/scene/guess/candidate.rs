@@ -109,7 +109,9 @@ impl Candidate {
         if max <= 0.0 {
             return Err("it has no values above zero".to_owned());
         }
-        let in_file = |voxels: &IndexBox| FileBox::around(voxels, &grid.world_from_index);
+        let in_file = |voxels: &IndexBox| {
+            FileBox::around(voxels, &grid.world_from_index, grid.taper.as_ref())
+        };
         Ok(Self {
             name: info.name.clone(),
             core: in_file(&core),

@@ -69,7 +69,15 @@ pub(super) fn visible_bounds(candidate: &Candidate) -> Option<FileBox> {
 fn reader(grid: &PlacedGrid) -> impl Fn(DVec3) -> Vec3A {
     let index_from_file = grid.world_from_index.inverse();
     move |place| {
-        let index = index_from_file.transform_point3(place).as_vec3a();
+        let index = index_from_file.transform_point3(place);
+        let index = match &grid.taper {
+            None => index,
+            Some(taper) => match taper.gather(index) {
+                Some(index) => index,
+                None => return Vec3A::ZERO,
+            },
+        };
+        let index = index.as_vec3a();
         match &grid.values {
             GridValues::Float(values) => Vec3A::splat(values.sample(index)),
             GridValues::Vector(values) => values.sample(index),

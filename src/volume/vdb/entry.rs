@@ -152,7 +152,7 @@ impl Descriptor {
             false => header.compression,
         };
         let metadata = metadata::read(stream)?;
-        let (transform, refused) = match transform::read(stream) {
+        let (transform, refused) = match transform::read(stream, header.version) {
             Ok(transform) => (transform, None),
             Err(Fault::Unsupported(reason)) if header.has_offsets => {
                 (Transform::IDENTITY, Some(reason))
