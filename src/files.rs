@@ -2,6 +2,7 @@
 
 mod folder;
 mod identity;
+mod name;
 mod target;
 
 use std::fs::File;
@@ -14,6 +15,7 @@ use tempfile::NamedTempFile;
 use crate::error::{Error, Progress, Result, report};
 use folder::folder_of;
 pub(crate) use identity::Identity;
+pub use name::{name_of, path_of};
 pub(crate) use target::Target;
 
 /// Writes a file as a whole or not at all: to a temporary name in the same folder, which takes the
@@ -121,7 +123,7 @@ impl Fingerprint {
     /// # Errors
     /// As of [`Fingerprint::of`].
     pub fn of_file(name: &str, progress: Progress) -> Result<Self> {
-        let file = File::open(name).map_err(|e| Error::io(name, e))?;
+        let file = File::open(path_of(name)).map_err(|e| Error::io(path_of(name), e))?;
         Self::of(name, BufReader::with_capacity(1 << 16, file), progress)
     }
 }

@@ -12,6 +12,18 @@ pub fn rounded(value: f64, digits: i32) -> String {
     if (1e-5..1e7).contains(&value.abs()) { value.to_string() } else { format!("{value:.1e}") }
 }
 
+/// `value` with so many decimals that it shows a hundredth of `step`, and no zeros at its end.
+pub fn in_steps(value: f64, step: f64) -> String {
+    let decimals = (2.0 - step.abs().max(1e-15).log10().floor()).clamp(0.0, 17.0);
+    let text = format!("{value:.0$}", decimals as usize);
+    let is_zero = value.abs() < 0.5 * 10_f64.powf(-decimals);
+    match text.contains('.') {
+        _ if is_zero => "0".to_owned(),
+        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => text,
+    }
+}
+
 /// One part of `factor` parts, with two significant digits: 1/38.
 pub fn one_part_of(factor: f64) -> String {
     format!("1/{}", rounded(factor, 2))
@@ -57,6 +69,14 @@ mod tests {
         assert_eq!([1234.0, -0.000_12, 99.6].map(|x| rounded(x, 2)), ["1200", "-0.00012", "100"]);
         assert_eq!(rounded(1.234e-9, 3), "1.2e-9");
         assert_eq!((percent(0.018_34), percent(12.0)), ("1.8 %".to_owned(), "1200 %".to_owned()));
+    }
+
+    #[test]
+    fn coordinates_have_the_decimals_of_a_voxel() {
+        let far = [499_999.989_5, 500_000.010_5, 500_000.0].map(|x| in_steps(x, 0.001));
+        assert_eq!(far, ["499999.9895", "500000.0105", "500000"]);
+        assert_eq!([-0.650_000_04, 0.0, -1e-9].map(|x| in_steps(x, 0.1)), ["-0.65", "0", "0"]);
+        assert_eq!([in_steps(1500.0, 1000.0), in_steps(0.5, 0.0)], ["1500", "0.5"]);
     }
 
     #[test]

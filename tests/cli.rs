@@ -1,5 +1,7 @@
 //! The program from end to end: what it writes, prints and returns.
 
+#[path = "cli/file_names.rs"]
+mod file_names;
 #[path = "cli/frames.rs"]
 mod frames;
 #[path = "cli/interrupts.rs"]

@@ -1,6 +1,11 @@
 //! From a name to a scene that can be rendered: what is guessed of a bare volume, what is built of
 //! settings, what is kept between builds, and what is refused.
 
+#[path = "vdb/grids.rs"]
+mod grids;
+#[path = "volumes_of_scenes/odd_files.rs"]
+mod odd_files;
+
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};
 
@@ -118,10 +123,9 @@ fn guesses_follow_names_and_ranges() {
             ("density", Some("temperature"))
         );
     }
-    for (file, why) in [("volumes/sphere.vdb", "level set"), ("volumes/smoke_000001.vdb", "zero")] {
-        let Some(path) = shared(file) else { continue };
+    if let Some(path) = shared("volumes/sphere.vdb") {
         let message = scene::load(&path).unwrap_err().to_string();
-        assert!(message.contains(file) && message.contains(why), "{message}");
+        assert!(message.contains("sphere.vdb") && message.contains("level set"), "{message}");
     }
 }
 
@@ -276,7 +280,8 @@ fn grids_of_different_voxel_sizes_lie_over_each_other() {
     let instance = &built.world.instances()[0];
     let described = scene::describe("builtin:torch_hd", &cache, NO_PROGRESS).unwrap();
     for grid in described.grids.iter().filter(|grid| grid.name != "flame") {
-        let [min, max] = grid.voxels.unwrap().bounds.unwrap().map(Vec3A::from_array);
+        let [min, max] = grid.voxels.unwrap().bounds.unwrap();
+        let [min, max] = [min, max].map(|corner| Vec3A::from_array(corner.map(|c| c as f32)));
         let slack = Vec3A::splat(1e-3);
         assert!((instance.bounds().min - slack).cmple(2.0 * min).all(), "{}", grid.name);
         assert!((instance.bounds().max + slack).cmpge(2.0 * max).all(), "{}", grid.name);

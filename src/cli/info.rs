@@ -1,14 +1,15 @@
 //! `flambeau info`: what is in a volume, a snapshot or a scene.
 
 use std::fmt::{Debug, Write};
-use std::path::Path;
 
 use serde::Serialize;
 
 use super::console::print;
 use super::exit::{Exit, Refusal};
+use super::values::file_name;
 use crate::error::{NO_PROGRESS, Result};
-use crate::format::mebibytes;
+use crate::files::path_of;
+use crate::format::{in_steps, mebibytes};
 use crate::image::exr::{Info, read_info};
 use crate::scene::settings::VolumeSettings;
 use crate::scene::{self, GridDescription, Settings, VolumeCache};
@@ -17,15 +18,16 @@ use crate::volume::vdb::GridInfo;
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
     /// A volume, a snapshot (.exr), a scene (.toml) or `builtin:NAME`.
-    #[arg(value_name = "FILE")]
+    #[arg(value_name = "FILE", value_parser = file_name())]
     file: String,
 }
 
 pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
     let file = arguments.file.as_str();
-    let ending = Path::new(file).extension().and_then(|ending| ending.to_str());
+    let path = path_of(file);
+    let ending = path.extension().and_then(|ending| ending.to_str());
     let text = match ending.unwrap_or_default().to_ascii_lowercase().as_str() {
-        "exr" => snapshot(&read_info(Path::new(file))?),
+        "exr" => snapshot(&read_info(&path)?),
         _ if scene::is_scene(file) => summary(&scene::load(file)?),
         _ => volume(file)?,
     };
@@ -77,9 +79,16 @@ fn describe_grid(report: &mut InfoText, grid: &GridDescription, info: &GridInfo)
     if let Some(voxels) = &grid.voxels {
         report.row("range", format!("{} .. {}, mean {}", voxels.min, voxels.max, voxels.mean));
         report.row("active voxels", voxels.active.to_string());
-        let bounds = voxels.bounds.map(|[low, high]| format!("{low:?} .. {high:?}"));
+        let finest = grid.voxel_size.into_iter().fold(f64::INFINITY, f64::min);
+        let corner = |corner: [f64; 3]| corner.map(|c| in_steps(c, finest)).join(", ");
+        let bounds =
+            voxels.bounds.map(|[low, high]| format!("[{}] .. [{}]", corner(low), corner(high)));
         report.row("bounds", bounds.unwrap_or_else(|| "empty".to_owned()));
         report.row("memory", mebibytes(voxels.memory_bytes));
+    }
+    if let Some(taper) = &info.transform.taper {
+        let text = format!("slices widen by {} of the nearest a voxel of depth", taper.growth);
+        report.row("frustum", text);
     }
     let map = &info.transform.index_to_world;
     for row in 0..3 {

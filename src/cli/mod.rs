@@ -46,7 +46,7 @@ struct Arguments {
     command: Option<Command>,
     /// A scene file, a volume, a snapshot (.exr) to go on from, or `builtin:NAME` to open in the
     /// window; without one the default scene.
-    #[arg(value_name = "SCENE|VOLUME")]
+    #[arg(value_name = "SCENE|VOLUME", value_parser = values::file_name())]
     scene: Option<String>,
 }
 

@@ -5,7 +5,7 @@ use glam::UVec2;
 
 use super::console::warn;
 use super::exit::Refusal;
-use super::values::{parse_frame, parse_size, quoted};
+use super::values::{file_name, parse_frame, parse_size, quoted};
 use crate::error::{Error, Progress, Result};
 use crate::scene::sequence::{Gap, volume_frame};
 use crate::scene::settings::{MAX_SEED, TimeSettings};
@@ -17,13 +17,13 @@ use crate::transport::strategy::Preset;
 #[derive(Debug, Args)]
 pub struct SceneArguments {
     /// A scene file, a volume or `builtin:NAME`.
-    #[arg(value_name = "SCENE|VOLUME")]
+    #[arg(value_name = "SCENE|VOLUME", value_parser = file_name())]
     scene: String,
     /// Sampling strategies: baseline, emission or full.
     #[arg(long, value_name = "NAME")]
     preset: Option<Preset>,
     /// Change a key of the scene, such as volume.0.density.scale=0.35 (see `flambeau keys`).
-    #[arg(long, value_name = "KEY=VALUE")]
+    #[arg(long, value_name = "KEY=VALUE", value_parser = file_name())]
     set: Vec<String>,
     /// Another seed gives the same picture with other noise.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=MAX_SEED))]

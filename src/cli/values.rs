@@ -1,7 +1,9 @@
 //! Values of the command line: how they are read, and how a shell takes them.
 
+use clap::builder::{OsStringValueParser, TypedValueParser};
 use glam::UVec2;
 
+use crate::files::{name_of, path_of};
 use crate::scene::settings::MAX_FRAME;
 
 /// A frame of a sequence, which may lie between two.
@@ -12,6 +14,11 @@ pub fn parse_frame(text: &str) -> Result<f64, String> {
         Ok(_) => Err(format!("frames lie between -{most} and {most}")),
         Err(_) => Err("expected the number of a frame".to_owned()),
     }
+}
+
+/// The name of a file, or another text that may hold one; it need not be Unicode.
+pub fn file_name() -> impl TypedValueParser<Value = String> {
+    OsStringValueParser::new().map(|name| name_of(name.as_ref()))
 }
 
 /// A number of seconds above 0.
@@ -40,7 +47,20 @@ pub fn quoted(word: &str) -> String {
     if !word.is_empty() && word.chars().all(is_plain) {
         return word.to_owned();
     }
+    if path_of(word).to_str() != Some(word) {
+        return quoted_bytes(path_of(word).as_os_str().as_encoded_bytes());
+    }
     format!("'{}'", word.replace('\'', r"'\''"))
+}
+
+/// Bytes that are no text, as Bash and other shells take them.
+fn quoted_bytes(bytes: &[u8]) -> String {
+    let byte = |byte: &u8| match byte {
+        b'\'' | b'\\' => format!("\\{}", char::from(*byte)),
+        b' '..=b'~' => char::from(*byte).to_string(),
+        _ => format!("\\x{byte:02x}"),
+    };
+    format!("$'{}'", bytes.iter().map(byte).collect::<String>())
 }
 
 /// A pixel, column and row from 0, such as 480,270.
@@ -52,6 +72,15 @@ pub fn parse_pixel(text: &str) -> Result<UVec2, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[cfg(unix)]
+    #[test]
+    fn words_that_are_no_text_are_quoted_byte_by_byte() {
+        use std::os::unix::ffi::OsStrExt;
+        let word = |bytes| quoted(&name_of(std::ffi::OsStr::from_bytes(bytes).as_ref()));
+        assert_eq!(word(b"it's \xe9.vdb"), r"$'it\'s \xe9.vdb'");
+        assert_eq!([word(b"it's"), word(b"a-b.vdb")], [r"'it'\''s'", "a-b.vdb"]);
+    }
 
     #[test]
     fn sizes_are_two_numbers() {

@@ -7,13 +7,14 @@ use std::time::SystemTime;
 
 use glam::DAffine3;
 
-use super::embedded;
 use super::sequence::Gap;
 use super::settings::VolumeSettings;
+use super::{embedded, grid_address};
 use crate::error::{Error, Progress, Result};
-use crate::volume::Volume;
+use crate::files::path_of;
 use crate::volume::grid::{IndexBox, SparseGrid};
 use crate::volume::vdb::{Directory, GridClass, GridInfo, VdbValues};
+use crate::volume::{Taper, Volume};
 
 /// Volume files and the volumes built from them, shared by everything that builds scenes.
 #[derive(Default)]
@@ -54,14 +55,18 @@ pub type Stamp = (Option<SystemTime>, u64);
 /// A grid in memory with its place in the file's space.
 #[derive(Clone)]
 pub struct PlacedGrid {
-    /// Name of the grid in the file.
+    /// Address of the grid in the file: its name, with `[n]` after it from the second of one name
+    /// on.
     pub name: String,
     /// Class of the grid, as its writer declared it.
     pub class: GridClass,
     /// Voxels of the grid.
     pub values: GridValues,
-    /// Transform from the grid's index space to the file's world.
+    /// Transform from the grid's index space to the file's world; of a frustum from its spread
+    /// space.
     pub world_from_index: DAffine3,
+    /// The way from index space to spread space, of a frustum.
+    pub taper: Option<Taper>,
 }
 
 /// The voxels of a grid.
@@ -107,7 +112,7 @@ impl VolumeCache {
         }
         let directory = match embedded {
             Some(bytes) => Directory::parse(name, bytes, progress)?,
-            None => Directory::open(name, progress)?,
+            None => Directory::open(path_of(name), progress)?,
         };
         let grids = Mutex::new(vec![None; directory.grids.len()]);
         let file = Arc::new(VolumeFile { name: name.to_owned(), stamp, directory, grids });
@@ -193,17 +198,16 @@ impl VolumeFile {
 
     /// Whether there is a grid of that name.
     pub fn has_grid(&self, name: &str) -> bool {
-        self.directory.grids.iter().any(|grid| grid.name == name)
+        grid_address::find(self.grid_names(), name).is_some()
     }
 
-    /// The grid of that name, loaded if it is not yet.
+    /// The grid of that name, or with `[n]` after it the n-th of a name, loaded if it is not yet.
     ///
     /// # Errors
     /// There is none (`field` is the key that asked for it), it cannot be read, or it is of a type
     /// that holds no values to render.
     pub fn grid(&self, name: &str, field: &str, progress: Progress) -> Result<PlacedGrid> {
-        let index = self.directory.grids.iter().position(|grid| grid.name == name);
-        let Some(index) = index else {
+        let Some(index) = grid_address::find(self.grid_names(), name) else {
             return Err(Error::invalid(&self.name, field, self.no_such_grid(name)));
         };
         self.grid_at(index, field, progress)
@@ -222,7 +226,7 @@ impl VolumeFile {
         let values = match known {
             Some(values) => values,
             None => {
-                let values = self.directory.load(index, progress)?;
+                let values = rebased(self.directory.load(index, progress)?);
                 if let Some(place) = locked(&self.grids).get_mut(index) {
                     *place = Some(values.clone());
                 }
@@ -233,17 +237,34 @@ impl VolumeFile {
             VdbValues::Float(grid) => GridValues::Float(grid),
             VdbValues::Vec3(grid) => GridValues::Vector(grid),
             VdbValues::Unsupported(reason) => {
-                let reason = format!("the grid \"{}\" cannot be rendered: {reason}", info.name);
+                let address = self.address(index);
+                let reason = format!("the grid \"{address}\" cannot be rendered: {reason}");
                 return Err(Error::unsupported(&self.name, field, reason));
             }
         };
-        Ok(PlacedGrid::new(info, values))
+        let grid = PlacedGrid::new(self.address(index), info, values);
+        let reaches_tip = grid.taper.zip(grid.bounds()).is_some_and(|(taper, b)| !taper.holds(&b));
+        if reaches_tip {
+            let reason = "it reaches behind the tip of its frustum; cut off that part";
+            return Err(Error::unsupported(&self.name, field, reason));
+        }
+        Ok(grid)
+    }
+
+    /// Address of the grid at `index`, by which [`VolumeFile::grid`] finds it.
+    pub fn address(&self, index: usize) -> String {
+        grid_address::of(self.grid_names(), index)
+    }
+
+    fn grid_names(&self) -> impl Iterator<Item = &str> + Clone {
+        self.directory.grids.iter().map(|grid| grid.name.as_str())
     }
 
     /// The names of the grids, as a sentence lists them.
     fn names(&self) -> String {
+        let indices = 0..self.directory.grids.len();
         let names: Vec<String> =
-            self.directory.grids.iter().map(|grid| format!("\"{}\"", grid.name)).collect();
+            indices.map(|index| format!("\"{}\"", self.address(index))).collect();
         if names.is_empty() { "no grids".to_owned() } else { names.join(", ") }
     }
 
@@ -253,9 +274,18 @@ impl VolumeFile {
 }
 
 impl PlacedGrid {
-    fn new(info: &GridInfo, values: GridValues) -> Self {
-        let world_from_index = info.transform.index_to_world;
-        Self { name: info.name.clone(), class: info.class, values, world_from_index }
+    fn new(name: String, info: &GridInfo, values: GridValues) -> Self {
+        let origin = match &values {
+            GridValues::Float(grid) => grid.origin(),
+            GridValues::Vector(grid) => grid.origin(),
+        };
+        let file_from_stored = info.transform.index_to_world;
+        let taper = info.transform.taper.map(|taper| taper.rebased(origin));
+        let world_from_index = match taper {
+            Some(_) => file_from_stored,
+            None => file_from_stored * DAffine3::from_translation(origin.as_dvec3()),
+        };
+        Self { name, class: info.class, values, world_from_index, taper }
     }
 
     /// Box around the stored voxels in index space, both ends included; `None` if empty.
@@ -267,8 +297,18 @@ impl PlacedGrid {
     }
 }
 
+/// The values with their voxels near the origin, as look-ups in single precision need them.
+fn rebased(mut values: VdbValues) -> VdbValues {
+    match &mut values {
+        VdbValues::Float(grid) => Arc::get_mut(grid).into_iter().for_each(SparseGrid::rebase),
+        VdbValues::Vec3(grid) => Arc::get_mut(grid).into_iter().for_each(SparseGrid::rebase),
+        VdbValues::Unsupported(_) => {}
+    }
+    values
+}
+
 pub(super) fn stamp_of(name: &str) -> Result<Stamp> {
-    let metadata = std::fs::metadata(name).map_err(|e| Error::io(name, e))?;
+    let metadata = std::fs::metadata(path_of(name)).map_err(|e| Error::io(path_of(name), e))?;
     if metadata.is_dir() {
         return Err(Error::invalid(name, "", "this is a folder; name a volume file in it"));
     }

@@ -1,12 +1,13 @@
 //! The description of a volume file for people: its grids with their sizes and ranges.
 
-use glam::Vec3A;
 use serde::Serialize;
 
 use super::cache::{GridValues, PlacedGrid, Stamp, VolumeCache, VolumeFile, stamp_of};
+use super::file_box::FileBox;
+use super::grid_address;
 use super::sequence::listed;
-use crate::error::{Progress, Result};
-use crate::math::Aabb;
+use crate::error::{Error, Progress, Result};
+use crate::files::name_of;
 use crate::volume::grid::Histogram;
 use crate::volume::vdb::GridInfo;
 
@@ -24,7 +25,8 @@ pub struct FileDescription {
 /// A grid of a file in words and numbers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GridDescription {
-    /// Name of the grid.
+    /// Name of the grid, by which a scene names it: with `[n]` after it from the second of one name
+    /// on.
     pub name: String,
     /// Type of the grid's values: `float`, `half float`, `vec3`, ... as the file says.
     pub type_name: String,
@@ -52,11 +54,18 @@ pub struct VoxelDescription {
     /// The mean of the active values; of vectors the mean of the components.
     pub mean: f32,
     /// The corners of the box around the stored voxels in the file's space; `None` if empty.
-    pub bounds: Option<[[f32; 3]; 2]>,
+    pub bounds: Option<[[f64; 3]; 2]>,
     /// Memory of the voxels in bytes.
     pub memory_bytes: usize,
     /// Histogram of the values from `min` to `max`; of vectors of their largest components.
     pub histogram: Histogram,
+}
+
+impl GridDescription {
+    /// Whether a scene names the grid by `address`.
+    pub fn is_called(&self, address: &str) -> bool {
+        grid_address::is_same(&self.name, address)
+    }
 }
 
 /// Describes a volume file, or the largest file of a sequence; what is read of it stays in `cache`.
@@ -64,9 +73,7 @@ pub struct VoxelDescription {
 /// # Errors
 /// The file cannot be read or a grid of it is damaged; names it.
 pub fn describe(name: &str, cache: &VolumeCache, progress: Progress) -> Result<FileDescription> {
-    let frames = listed(name)?;
-    let fullest = frames.as_ref().and_then(|(_, files)| files.fullest());
-    let name = fullest.map_or(name.to_owned(), |file| file.path.display().to_string());
+    let name = described_file(name)?;
     let file = cache.file(&name, progress)?;
     let directory = file.directory();
     let metadata = directory.metadata.iter().map(|(k, v)| (k.clone(), v.to_string())).collect();
@@ -82,10 +89,14 @@ pub fn describe(name: &str, cache: &VolumeCache, progress: Progress) -> Result<F
 /// Time and size of the file that [`describe`] would describe; `None` for embedded ones, and for
 /// those that are not there.
 pub fn stamp(name: &str) -> Option<Stamp> {
-    let frames = listed(name).ok()?;
+    stamp_of(&described_file(name).ok()?).ok()
+}
+
+/// The file that [`describe`] describes: the largest of a sequence, else `name` itself.
+fn described_file(name: &str) -> Result<String> {
+    let frames = listed(name)?;
     let fullest = frames.as_ref().and_then(|(_, files)| files.fullest());
-    let name = fullest.map_or(name.to_owned(), |file| file.path.display().to_string());
-    stamp_of(&name).ok()
+    Ok(fullest.map_or(name.to_owned(), |file| name_of(&file.path)))
 }
 
 fn grid(
@@ -94,23 +105,31 @@ fn grid(
     info: &GridInfo,
     progress: Progress,
 ) -> Result<GridDescription> {
-    let voxels = match &info.unsupported {
-        Some(_) => None,
-        None => Some(voxels(&file.grid_at(index, &info.name, progress)?)),
+    let (voxels, unsupported) = match &info.unsupported {
+        Some(reason) => (None, Some(reason.clone())),
+        None => match file.grid_at(index, &info.name, progress) {
+            Ok(grid) => (Some(voxels(&grid)), None),
+            Err(Error::Unsupported { reason, .. }) => (None, Some(reason)),
+            Err(error) => return Err(error),
+        },
     };
-    let half = if info.is_half { "half " } else { "" };
+    let is_packed = info.is_half && !matches!(info.value_type(), "half" | "vec3h");
+    let half = if is_packed { "half " } else { "" };
     Ok(GridDescription {
-        name: info.name.clone(),
+        name: file.address(index),
         type_name: format!("{half}{}", info.value_type()),
         class: info.class.to_string(),
         voxel_size: info.transform.voxel_size.to_array(),
         voxels,
-        unsupported: info.unsupported.clone(),
+        unsupported,
     })
 }
 
 fn voxels(grid: &PlacedGrid) -> VoxelDescription {
-    let bounds = grid_bounds(grid).map(|bounds| [bounds.min.to_array(), bounds.max.to_array()]);
+    let bounds = grid
+        .bounds()
+        .map(|bounds| FileBox::around(&bounds, &grid.world_from_index, grid.taper.as_ref()));
+    let bounds = bounds.map(|bounds| [bounds.min.to_array(), bounds.max.to_array()]);
     match &grid.values {
         GridValues::Float(values) => {
             let stats = values.stats();
@@ -140,15 +159,4 @@ fn voxels(grid: &PlacedGrid) -> VoxelDescription {
             }
         }
     }
-}
-
-/// The box around a grid's stored voxels, in the file's space.
-pub(super) fn grid_bounds(grid: &PlacedGrid) -> Option<Aabb> {
-    let bounds = grid.bounds()?;
-    let half_voxel = Vec3A::splat(0.5);
-    let in_index = Aabb::new(
-        Vec3A::from(bounds.min.as_vec3()) - half_voxel,
-        Vec3A::from(bounds.max.as_vec3()) + half_voxel,
-    );
-    Some(in_index.transformed(&grid.world_from_index.as_affine3a()))
 }

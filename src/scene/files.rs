@@ -5,6 +5,7 @@ use std::path::{Component, Path, PathBuf};
 
 use super::keys;
 use crate::error::{Error, Result};
+use crate::files::{name_of, path_of};
 
 /// Prefix of the names of embedded scenes and volumes.
 pub(super) const BUILTIN: &str = "builtin:";
@@ -24,25 +25,18 @@ pub(super) fn folder_of(scene_file: &Path) -> Result<PathBuf> {
 }
 
 /// The absolute name of `file` as written in a scene in `folder`; embedded ones stay as they are.
-pub(super) fn resolve(file: &str, folder: &Path, source: &str) -> Result<String> {
+pub(super) fn resolve(file: &str, folder: &Path) -> Result<String> {
     if file.starts_with(BUILTIN) || file.is_empty() {
         return Ok(file.to_owned());
     }
-    let joined = std::path::absolute(folder.join(file)).map_err(|e| Error::io(file, e))?;
-    let clean = without_dots(&joined);
-    match clean.to_str() {
-        Some(text) => Ok(text.to_owned()),
-        None => Err(Error::unsupported(
-            source,
-            "file",
-            format!("the name of {} is not Unicode; rename its folders", clean.display()),
-        )),
-    }
+    let path = folder.join(path_of(file));
+    let absolute = std::path::absolute(&path).map_err(|e| Error::io(path, e))?;
+    Ok(name_of(&without_dots(&absolute)))
 }
 
 /// `file` as it is written into a scene in `folder`: relative if they share more than the root.
 pub(super) fn relative(file: &str, folder: &Path) -> String {
-    let path = Path::new(file);
+    let path = &*path_of(file);
     if file.starts_with(BUILTIN) || !path.is_absolute() {
         return file.to_owned();
     }
@@ -55,11 +49,8 @@ pub(super) fn relative(file: &str, folder: &Path) -> String {
     let up = std::iter::repeat_n(Component::ParentDir, from.len() - shared);
     let relative: PathBuf = up.chain(to.into_iter().skip(shared)).collect();
     // A relative name that would read as an embedded one needs a folder in front.
-    match relative.to_str() {
-        Some(text) if text.starts_with(BUILTIN) => format!("./{text}"),
-        Some(text) => text.to_owned(),
-        None => file.to_owned(),
-    }
+    let name = name_of(&relative);
+    if name.starts_with(BUILTIN) { format!("./{name}") } else { name }
 }
 
 /// Whether the name ends in `.extension`, in any case.
@@ -98,7 +89,7 @@ mod tests {
             ("builtin:torch_hd", "builtin:torch_hd"),
         ] {
             assert_eq!(relative(file, folder), written);
-            assert_eq!(resolve(written, folder, "").unwrap(), file);
+            assert_eq!(resolve(written, folder).unwrap(), file);
         }
     }
 }

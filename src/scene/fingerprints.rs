@@ -6,7 +6,7 @@ use super::files::BUILTIN;
 use super::sequence::volume_frame;
 use super::{Settings, embedded};
 use crate::error::{Progress, Result};
-use crate::files::Fingerprint;
+use crate::files::{Fingerprint, path_of};
 
 /// The fingerprint of every file that the scene reads in its frame, each once, in the scene's order.
 ///
@@ -33,7 +33,10 @@ pub fn fingerprints(settings: &Settings, progress: Progress) -> Result<Vec<Finge
 /// The folder of a sequence cannot be read or has no frame.
 pub fn volume_files(settings: &Settings) -> Result<Vec<PathBuf>> {
     let names = frame_files(settings)?.into_iter();
-    Ok(names.filter(|name| !name.starts_with(BUILTIN)).map(PathBuf::from).collect())
+    Ok(names
+        .filter(|name| !name.starts_with(BUILTIN))
+        .map(|name| path_of(&name).into_owned())
+        .collect())
 }
 
 /// The names of the files that the volumes show in the scene's frame.

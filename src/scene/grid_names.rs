@@ -16,27 +16,105 @@ pub(super) const TEMPERATURE: &[&str] = &["temperature", "temp", "heat", "kelvin
 pub(super) const FLAME: &[&str] = &["flame", "flames", "fire", "burn", "flame_noise"];
 
 /// Names of grids that simulations write beside those that are seen.
-pub(super) const OTHER: &[&str] = &[
-    "velocity",
-    "vel",
+const OTHER: &[&str] = &[
     "v",
-    "shadow",
+    "n",
+    "p",
+    "pos",
+    "id",
+    "uid",
+    "ls",
     "color",
     "colour",
-    "color_r",
-    "color_g",
-    "color_b",
     "cd",
+    "rgb",
+    "albedo",
+    "shadow",
     "fuel",
     "fuel_noise",
     "react",
-    "pressure",
     "flags",
-    "phi",
-    "collision",
-    "divergence",
     "age",
+    "life",
+    "distance",
+    "surface",
+    "obstacle",
+    "obstacles",
+    "index",
+    "rest",
+    "rest2",
+    "uv",
+    "uvw",
+    "force",
+    "forces",
+    "wind",
+    "flow",
+    "stick",
 ];
+
+/// Words that mark a grid as one of those, whatever else its name says.
+const OTHER_WORDS: &[&str] = &[
+    "velocity",
+    "vel",
+    "vels",
+    "velocities",
+    "speed",
+    "motion",
+    "motionvector",
+    "vorticity",
+    "vort",
+    "curl",
+    "normal",
+    "normals",
+    "position",
+    "gradient",
+    "acceleration",
+    "accel",
+    "displacement",
+    "mask",
+    "sdf",
+    "isdf",
+    "levelset",
+    "collision",
+    "collisions",
+    "collider",
+    "pressure",
+    "divergence",
+    "texcoord",
+];
+
+/// Endings of the grids that hold one component of a vector each.
+const COMPONENTS: &[&str] = &["x", "y", "z", "w", "r", "g", "b", "u", "0", "1", "2"];
+
+/// Names of vectors whose components are also written as `vx` or `velx`.
+const JOINED: &[&str] = &["v", "vel", "velocity", "n", "p", "rest", "vort", "vorticity"];
+
+/// Whether a grid of that name is smoke or fire.
+pub(super) fn is_seen(name: &str) -> bool {
+    let names = [DENSITY, EMISSION, TEMPERATURE, FLAME];
+    names.iter().any(|names| names.iter().any(|known| name.eq_ignore_ascii_case(known)))
+}
+
+/// Whether a grid of that name is neither smoke nor fire: a velocity or one of its components
+/// (`vel`, `vel.x`, `v_y`, `velz`), texture coordinates, identifiers, masks, distances.
+pub(super) fn is_other(name: &str) -> bool {
+    if is_seen(name) {
+        return false;
+    }
+    let name = name.to_ascii_lowercase();
+    let words = name.split(|letter: char| !letter.is_alphanumeric());
+    let mut words: Vec<&str> = words.filter(|word| !word.is_empty()).collect();
+    if words.len() > 1 {
+        words.pop_if(|last| COMPONENTS.contains(last));
+    }
+    let is_component = |word: &str| {
+        let vector = word.strip_suffix(['x', 'y', 'z']);
+        vector.is_some_and(|vector| JOINED.contains(&vector))
+    };
+    let marks =
+        |word: &&str| OTHER_WORDS.contains(word) || word.starts_with("phi") || is_component(word);
+    OTHER.contains(&&*name) || OTHER.contains(&&*words.join("_")) || words.iter().any(marks)
+}
 
 /// Largest value of a grid above which its temperatures are in kelvin.
 pub(super) const KELVIN_FROM: f32 = 200.0;
@@ -67,6 +145,18 @@ pub(super) fn hottest(max: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn companions_of_smoke_are_told_by_their_names() {
+        let other = "vel vel.x vel_y velz VELOCITY.X v v.x v_z vx rest rest.y uvw vorticity N N.z Cd \
+                     Cd.r P P_x id mask density_mask sdf smoke_sdf collision vel_old phiObs phi_out \
+                     color_r vel[2] motion.vector pressure";
+        other.split_whitespace().for_each(|name| assert!(is_other(name), "{name}"));
+        let seen = "density Density smoke temperature flame flames heat burn emission Ce cloud_main \
+                    haze unnamed density.001 fire_density dust x1";
+        seen.split_whitespace().for_each(|name| assert!(!is_other(name), "{name}"));
+        assert!(!is_other(""));
+    }
 
     #[test]
     fn temperatures_are_told_by_their_largest_value() {

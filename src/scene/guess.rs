@@ -1,17 +1,20 @@
 //! Guesses for a bare volume in place of a scene: the roles of its grids, the up axis, density,
 //! brightness and camera. Every guess is an ordinary setting, and is reported in a note.
 
+mod candidate;
 mod emission;
+mod framing;
 mod grid_columns;
 mod note;
 mod roles;
 
 use std::sync::Arc;
 
+use super::assemble::world_from_file;
 use super::cache::VolumeFile;
 use super::conventions::{Program, upright};
-use super::describe::grid_bounds;
 use super::embedded::short_name;
+use super::file_box::FileBox;
 use super::fit_camera::fit_camera;
 use super::settings::{
     Albedo, Axis, CameraSettings, Color, DensitySettings, LightKind, LightSettings, PhaseSettings,
@@ -20,9 +23,9 @@ use super::settings::{
 use crate::error::{Error, Progress, Result};
 use crate::format::two_digits;
 use crate::math::Aabb;
+use candidate::{Candidate, LeftOut};
 use grid_columns::{FAIRLY, columns, quantile, visible_bounds};
 pub use note::{About, Note};
-use roles::Candidate;
 
 /// A scene made up for a bare volume.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,86 +61,104 @@ const FIRE_SMOKE: Appearance = Appearance { words: &[], depth: 4.0, albedo: 0.5,
 const SOOT: Appearance = Appearance { words: &[], depth: 0.4, albedo: 0.3, radiance: 0.9 };
 /// A density that is nowhere above this is soot, if there is fire.
 const SOOT_BELOW: f32 = 0.3;
+/// Grids whose reasons an error lists; `flambeau info` has the rest.
+const MOST_REASONS: usize = 8;
+
 /// Makes up a scene for `file`.
 ///
 /// # Errors
-/// No grid of it can be rendered; names them and what to do.
+/// No grid of it can be rendered; names them, each with its reason.
 pub(super) fn guess(file: &Arc<VolumeFile>, progress: Progress) -> Result<Guess> {
-    let grids = load(file, progress)?;
+    let (grids, left_out) = candidate::candidates(file, progress)?;
     let density = roles::density(&grids);
-    let emission = roles::emission(&grids);
+    let (emission, role) = roles::emission(&grids);
     let mut notes = Vec::new();
-    let seen: Vec<&Candidate> = density.into_iter().chain(emission.map(|e| e.0)).collect();
-    let Some(bounds) = bounds_of(&seen) else { return Err(nothing_to_see(file)) };
-    let is_y_up = is_y_up(file, &bounds, &mut notes);
-    // The line of sight of the default camera, in the file's own space.
-    let axis = if is_y_up { 2 } else { 1 };
-
-    let name = short_name(file.name());
-    let look = look_of(name, density, emission.is_some());
-    let mut volume = VolumeSettings {
-        name: name.to_owned(),
+    let seen: Vec<&Candidate> = density.iter().chain(&emission).copied().collect();
+    let Some(bounds) = seen.iter().map(|grid| grid.core).reduce(FileBox::union) else {
+        return Err(nothing_to_see(file, &grids, &left_out));
+    };
+    let is_y_up = is_y_up(file, &bounds.to_aabb(), &mut notes);
+    let mut first = VolumeSettings {
         file: Some(file.name().to_owned()),
-        albedo: Albedo::Gray(look.albedo),
         phase: PhaseSettings { g: 0.3 },
+        rotate: upright(if is_y_up { Axis::Y } else { Axis::Z }),
         ..VolumeSettings::default()
     };
-    volume.rotate = upright(if is_y_up { Axis::Y } else { Axis::Z });
-    volume.density = density_settings(density, look.depth, &bounds, axis, &mut notes);
-    if let Some((grid, role)) = emission {
-        volume.emission =
-            emission::emission_settings(grid, role, look.radiance, &bounds, axis, &mut notes);
-    }
+    let look = look_of(short_name(file.name()), &density, !emission.is_empty());
+    first.albedo = Albedo::Gray(look.albedo);
+    let voxel = seen.iter().map(|grid| grid.voxel).fold(f64::INFINITY, f64::min);
+    framing::move_near(&mut first, &bounds, voxel, &mut notes);
+    // The line of sight of the default camera, in the file's own space.
+    let axis = if is_y_up { 2 } else { 1 };
+    first.density = density_settings(&density, look.depth, &bounds, axis, &mut notes);
+    first.emission =
+        emission::emission_settings(&emission, role, look.radiance, &bounds, axis, &mut notes);
 
     let mut settings = Settings::default();
-    let visible = seen.iter().filter_map(|one| visible_bounds(&one.grid, one.mean));
-    let visible = visible.reduce(|a, b| a.union(&b)).unwrap_or(bounds);
-    let world_bounds = visible.transformed(&super::assemble::world_from_file(&volume));
-    settings.camera = default_camera(&settings, &world_bounds);
-    if emission.is_none() {
+    let visible = seen.iter().filter_map(|one| visible_bounds(one)).reduce(FileBox::union);
+    let visible = visible.unwrap_or(bounds).transformed(&world_from_file(&first));
+    settings.camera = default_camera(&settings, &visible.to_aabb());
+    framing::notes_of_strays(&seen, &mut notes);
+    if emission.is_empty() {
         daylight(&mut settings);
         notes.push(Note::new(About::Light, "nothing emits light, so a sun and a sky were added"));
     }
-    settings.volume.push(volume);
+    settings.volume = one_volume_each(&first, &density, &emission, short_name(file.name()));
+    for grid in left_out.iter().filter(|grid| grid.is_missed) {
+        let text = format!("\"{}\" is left out: {}", grid.name, grid.reason);
+        notes.push(Note::new(About::LeftOut, text));
+    }
     Ok(Guess { settings, notes })
 }
 
-fn load(file: &Arc<VolumeFile>, progress: Progress) -> Result<Vec<Candidate>> {
-    let infos = &file.directory().grids;
-    let count = infos.len().max(1) as f32;
-    roles::candidates(infos.len(), |index| {
-        let Some(info) = infos.get(index) else { return Ok(None) };
-        if info.unsupported.is_some() || !roles::is_worth_loading(&info.name) {
-            return Ok(None);
+/// Volumes that add up to all grids of the names of density and emission, the n-th of the one with
+/// the n-th of the other.
+fn one_volume_each(
+    first: &VolumeSettings,
+    density: &[&Candidate],
+    emission: &[&Candidate],
+    name: &str,
+) -> Vec<VolumeSettings> {
+    let address = |grids: &[&Candidate], n: usize| Some(grids.get(n)?.grid.name.clone());
+    let volume = |n: usize| {
+        let mut volume = first.clone();
+        volume.name = nth_name(name, n);
+        match address(density, n) {
+            Some(grid) => volume.density.grid = Some(grid),
+            None => volume.density = DensitySettings { grid: None, scale: Color::Gray(0.0) },
         }
-        let part = |fraction: f32| progress((index as f32 + fraction) / count);
-        file.grid_at(index, &info.name, &part).map(Some)
-    })
+        match address(emission, n) {
+            Some(grid) => volume.emission.grid = Some(grid),
+            None => volume.emission = Default::default(),
+        }
+        volume
+    };
+    (0..density.len().max(emission.len())).map(volume).collect()
 }
 
-fn nothing_to_see(file: &VolumeFile) -> Error {
-    let grids: Vec<String> = file
-        .directory()
-        .grids
-        .iter()
-        .map(|grid| format!("\"{}\" ({}, {})", grid.name, grid.type_name, grid.class))
-        .collect();
-    let reason = if grids.is_empty() {
-        "there are no grids in this file; export it again".to_owned()
-    } else {
-        format!(
-            "no grid can be rendered as smoke or fire: {}; export a fog volume with values above \
-             zero",
-            grids.join(", ")
-        )
+/// Name of the n-th volume of a file.
+pub(super) fn nth_name(name: &str, n: usize) -> String {
+    if n == 0 { name.to_owned() } else { format!("{name} {}", n + 1) }
+}
+
+fn nothing_to_see(file: &VolumeFile, grids: &[Candidate], left_out: &[LeftOut]) -> Error {
+    let unused = grids.iter().map(|grid| (&grid.grid.name, roles::why_unused(grid)));
+    let others = left_out.iter().map(|grid| (&grid.name, grid.reason.as_str()));
+    let reasons: Vec<String> =
+        others.chain(unused).map(|(name, reason)| format!("\"{name}\": {reason}")).collect();
+    let reason = match reasons.len() {
+        0 => "there are no grids in this file; export it again".to_owned(),
+        count => {
+            let mut listed = reasons;
+            listed.truncate(MOST_REASONS);
+            let more = match count.saturating_sub(MOST_REASONS) {
+                0 => String::new(),
+                more => format!(" (and {more} more, see `flambeau info`)"),
+            };
+            format!("no grid can be rendered as smoke or fire. {}{more}", listed.join(". "))
+        }
     };
     Error::invalid(file.name(), "", reason)
-}
-
-/// The box around the active voxels of the grids, in the file's space.
-fn bounds_of(grids: &[&Candidate]) -> Option<Aabb> {
-    let boxes = grids.iter().filter_map(|candidate| grid_bounds(&candidate.grid));
-    boxes.reduce(|a, b| a.union(&b))
 }
 
 /// Programs have habits; files of none of them stand on the ground of one of the axes.
@@ -158,32 +179,42 @@ fn stands_on_y(bounds: &Aabb) -> bool {
     stands_on(1, 0.08) && !stands_on(2, 0.2) && bounds.center().z.abs() < 0.1 * size
 }
 
-fn look_of(name: &str, density: Option<&Candidate>, is_fire: bool) -> &'static Appearance {
+fn look_of(name: &str, density: &[&Candidate], is_fire: bool) -> &'static Appearance {
     let name = name.to_ascii_lowercase();
     let is_named = |look: &&Appearance| look.words.iter().any(|word| name.contains(word));
-    match density {
-        Some(density) if is_fire && density.max < SOOT_BELOW => &SOOT,
+    let largest = density.iter().map(|grid| grid.max).reduce(f32::max);
+    match largest {
+        Some(largest) if is_fire && largest < SOOT_BELOW => &SOOT,
         _ if is_fire => &FIRE_SMOKE,
         _ => NAMED_APPEARANCES.iter().find(is_named).unwrap_or(&SMOKE),
     }
 }
 
 fn density_settings(
-    density: Option<&Candidate>,
+    density: &[&Candidate],
     wanted_depth: f32,
-    bounds: &Aabb,
+    bounds: &FileBox,
     axis: usize,
     notes: &mut Vec<Note>,
 ) -> DensitySettings {
-    let Some(density) = density else {
+    let Some(first) = density.first() else {
         notes.push(Note::new(About::Density, "no density grid, only fire"));
         return DensitySettings { grid: None, scale: Color::Gray(0.0) };
     };
-    let depths = columns(&density.grid, bounds, axis, |value| value.x.max(0.0));
+    let depths = columns(density, bounds, axis, |value| value.x.max(0.0));
     let scale = quantile(&depths, FAIRLY).map_or(1.0, |depth| two_digits(wanted_depth / depth));
-    let name = &density.grid.name;
+    let name = &first.grid.name;
     let text = format!("\"{name}\" is the density (density × {scale})");
     notes.push(Note::new(About::Density, text));
+    if density.len() > 1 {
+        let (count, last) = (density.len(), density.len() - 1);
+        let text = format!(
+            "{count} grids are called \"{name}\"; all are shown, added together, as \"{name}\" to \
+             \"{}\"",
+            density[last].grid.name
+        );
+        notes.push(Note::new(About::Density, text));
+    }
     DensitySettings { grid: Some(name.clone()), scale: Color::Gray(scale) }
 }
 

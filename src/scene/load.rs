@@ -1,5 +1,6 @@
 //! Loading settings by name: a scene file, an embedded scene, or a bare volume.
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use super::files::{self, BUILTIN};
@@ -7,6 +8,7 @@ use super::guess::{About, Note};
 use super::sequence::NumberedSet;
 use super::{Overrides, Settings, VolumeCache, apply, embedded, guess, parse};
 use crate::error::{Error, NO_PROGRESS, Progress, Result};
+use crate::files::{name_of, path_of};
 
 /// A scene or volume that was opened.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,9 +26,9 @@ pub fn is_scene(source: &str) -> bool {
 
 /// The file on the disk that the scene called `source` is read from; `None` for embedded scenes and
 /// bare volumes.
-pub fn scene_file(source: &str) -> Option<&Path> {
-    let path = Path::new(source);
-    (!source.starts_with(BUILTIN) && files::has_extension(path, "toml")).then_some(path)
+pub fn scene_file(source: &str) -> Option<Cow<'_, Path>> {
+    let path = path_of(source);
+    (!source.starts_with(BUILTIN) && files::has_extension(&path, "toml")).then_some(path)
 }
 
 /// The settings of a scene file, of a bare volume, or of `builtin:NAME`.
@@ -52,12 +54,12 @@ pub fn open(
     if let Some(text) = embedded::scene(source) {
         return scene(text, source, Path::new(""), overrides);
     }
-    let path = Path::new(source);
+    let path = &*path_of(source);
     if let Some(frames) = sequence_named(source)? {
         return sequence(&frames, overrides, cache, progress);
     }
     if source.starts_with(BUILTIN) || files::has_extension(path, "vdb") {
-        let name = files::resolve(source, Path::new(""), source)?;
+        let name = files::resolve(source, Path::new(""))?;
         let guess = guess::guess(&cache.file(&name, progress)?, progress)?;
         let settings = apply(&guess.settings, overrides)?;
         return Ok(Opened { settings, notes: guess.notes });
@@ -73,14 +75,14 @@ pub fn open(
 
 /// The sequence that `source` names: a pattern, a file of a numbered set, or a folder of one.
 fn sequence_named(source: &str) -> Result<Option<NumberedSet>> {
-    let path = Path::new(source);
+    let path = &*path_of(source);
     if path.is_dir() {
         return NumberedSet::of_folder(path).map(Some);
     }
     if source.starts_with(BUILTIN) || !files::has_extension(path, "vdb") {
         return Ok(None);
     }
-    NumberedSet::of_name(&files::resolve(source, Path::new(""), source)?)
+    NumberedSet::of_name(&files::resolve(source, Path::new(""))?)
 }
 
 /// A bare sequence. What is guessed is guessed once, from the largest file, which shows most of
@@ -91,12 +93,12 @@ fn sequence(
     cache: &VolumeCache,
     progress: Progress,
 ) -> Result<Opened> {
-    let name = set.fullest().display().to_string();
+    let name = name_of(&set.fullest());
     let mut guess = guess::guess(&cache.file(&name, progress)?, progress)?;
     let mut settings = guess.settings;
-    for volume in &mut settings.volume {
-        volume.file = Some(set.pattern.spelling().display().to_string());
-        volume.name = set.pattern.short_name();
+    for (index, volume) in settings.volume.iter_mut().enumerate() {
+        volume.file = Some(name_of(&set.pattern.spelling()));
+        volume.name = guess::nth_name(&set.pattern.short_name(), index);
     }
     settings.time.frame = f64::from(set.frame);
     guess.notes.push(Note::new(About::Sequence, set.in_words()));

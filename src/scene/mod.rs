@@ -14,6 +14,7 @@
 //! - `assemble`: settings to the scene that is rendered; [`sequence`]: the file of each frame.
 //! - `guess`, `conventions`, `grid_names`, `role`: settings for a bare volume; `fit_camera`: its
 //!   camera.
+//! - `grid_address`: names of grids in scenes; `file_box`: boxes in the space of a file.
 //! - `additions`: new lights and floors; `describe`: the contents of a volume file for people.
 //! - `resume`, `fingerprints`: whether a snapshot can be continued, and whether its files changed.
 
@@ -25,9 +26,11 @@ mod conventions;
 mod describe;
 pub mod effect;
 mod embedded;
+mod file_box;
 mod files;
 mod fingerprints;
 mod fit_camera;
+mod grid_address;
 mod grid_names;
 mod guess;
 pub mod keys;

@@ -144,7 +144,7 @@ fn leaf(text: &str, schema: Option<&Schema>, path: &str) -> Result<Value> {
     });
     match value_of(text, is_name) {
         Value::String(file) if files::is_file_key(path) => {
-            Ok(Value::String(files::resolve(&file, std::path::Path::new(""), OVERRIDES)?))
+            Ok(Value::String(files::resolve(&file, std::path::Path::new(""))?))
         }
         value => Ok(value),
     }

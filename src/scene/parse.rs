@@ -20,7 +20,7 @@ pub fn parse(text: &str, source: &str, folder: &Path, overrides: &Overrides) -> 
     expand_preset(&mut scene, source)?;
     spell_brightness_one_way(&mut scene, source)?;
     check::check_keys(&scene, source)?;
-    resolve_files(&mut scene, folder, source)?;
+    resolve_files(&mut scene, folder)?;
     let settings = from_table(scene, source)?;
     rules::check_rules(&settings, source)?;
     apply(&settings, overrides)
@@ -78,11 +78,11 @@ fn syntax(text: &str, source: &str, error: &toml::de::Error) -> Error {
     Error::invalid(source, line.unwrap_or_default(), error.message().to_owned())
 }
 
-fn resolve_files(scene: &mut Table, folder: &Path, source: &str) -> Result<()> {
+fn resolve_files(scene: &mut Table, folder: &Path) -> Result<()> {
     let Some(Value::Array(volumes)) = scene.get_mut("volume") else { return Ok(()) };
     for volume in volumes {
         if let Some(Value::String(file)) = volume.get_mut("file") {
-            *file = files::resolve(file, folder, source)?;
+            *file = files::resolve(file, folder)?;
         }
     }
     Ok(())

@@ -1,6 +1,7 @@
 //! The role of a grid of a file in a volume, and how to give it that role.
 
 use super::describe::GridDescription;
+use super::grid_address::is_same;
 use super::grid_names::{self, kelvin_scale};
 use super::settings::{Color, EmissionMode, EmissionSettings, Normalize, VolumeSettings};
 use crate::format::two_digits;
@@ -53,8 +54,11 @@ impl Role {
     /// Whether `volume` uses the grid called `name` so.
     pub fn is_of(self, volume: &VolumeSettings, name: &str) -> bool {
         match self.mode() {
-            None => !volume.density.scale.is_black() && volume.density_grid() == name,
-            Some(mode) => volume.emission.mode == mode && volume.emission_grid() == Some(name),
+            None => !volume.density.scale.is_black() && is_same(volume.density_grid(), name),
+            Some(mode) => {
+                let grid = volume.emission_grid();
+                volume.emission.mode == mode && grid.is_some_and(|grid| is_same(grid, name))
+            }
         }
     }
 
@@ -104,7 +108,7 @@ fn visible_scale(grid: &GridDescription) -> f32 {
     let depth = grid.voxels.and_then(|voxels| {
         let [low, high] = voxels.bounds?;
         let edges = std::iter::zip(low, high).map(|(low, high)| high - low);
-        Some(edges.fold(f32::INFINITY, f32::min) * voxels.mean)
+        Some(edges.fold(f64::INFINITY, f64::min) as f32 * voxels.mean)
     });
     depth.filter(|depth| *depth > 0.0).map_or(1.0, |depth| two_digits(DEPTH / depth))
 }

@@ -24,6 +24,7 @@ pub use time::{MAX_FRAME, TimeSettings};
 pub use values::{Albedo, Axis, Color, Extent, GridKey};
 pub use volume::{DensitySettings, Outside, PhaseSettings, RampKind, VolumeSettings, VolumeShape};
 
+use or_default::is_default;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -64,9 +65,4 @@ impl Settings {
         let moved = if self.film.animate_seed { self.time.since_start() } else { 0 };
         self.film.seed.wrapping_add_signed(moved) & MAX_SEED
     }
-}
-
-/// Whether a table need not be written.
-fn is_default<T: Default + PartialEq>(value: &T) -> bool {
-    *value == T::default()
 }

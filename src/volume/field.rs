@@ -7,6 +7,7 @@ use glam::{Affine3A, Vec3A};
 use super::{
     grid::{SparseGrid, Voxel},
     procedural::{Noise, Ramp},
+    taper::{Gather, Taper},
 };
 use crate::math::{Aabb, Rgb};
 
@@ -14,26 +15,42 @@ use crate::math::{Aabb, Rgb};
 #[derive(Clone, Debug)]
 pub struct GridField<V: Voxel> {
     grid: Arc<SparseGrid<V>>,
-    /// Transform to the grid's index space; `None` where that is the volume's own space.
-    grid_from_local: Option<Affine3A>,
+    place: Place,
     /// Box of the grid in its index space, whatever other grids the volume has.
     support: Aabb,
 }
 
+/// The way from the volume's space to the grid's index space.
+#[derive(Clone, Debug)]
+enum Place {
+    /// They are one.
+    Same,
+    Affine(Affine3A),
+    /// Through the grid's spread space.
+    Tapered(Affine3A, Gather),
+}
+
 impl<V: Voxel> GridField<V> {
-    /// Places `grid` in a volume's space. An identity placement costs nothing at look-up.
-    pub fn new(grid: Arc<SparseGrid<V>>, grid_from_local: Affine3A) -> Self {
-        let identity = grid_from_local.abs_diff_eq(Affine3A::IDENTITY, 1e-6);
+    /// Places `grid` in a volume's space. An identity placement costs nothing at look-up. With a
+    /// `taper`, the transform leads to the grid's spread space, and the grid must lie before the
+    /// tip of the frustum ([`Taper::holds`]).
+    pub fn new(grid: Arc<SparseGrid<V>>, grid_from_local: Affine3A, taper: Option<&Taper>) -> Self {
         let support = grid_support(&grid);
-        Self { grid, grid_from_local: (!identity).then_some(grid_from_local), support }
+        let place = match taper {
+            Some(taper) => Place::Tapered(grid_from_local, Gather::new(taper)),
+            None if grid_from_local.abs_diff_eq(Affine3A::IDENTITY, 1e-6) => Place::Same,
+            None => Place::Affine(grid_from_local),
+        };
+        Self { grid, place, support }
     }
 
     /// Trilinear value at a point of the volume's space.
     #[inline]
     pub fn at(&self, local: Vec3A) -> V {
-        let index = match &self.grid_from_local {
-            None => local,
-            Some(transform) => transform.transform_point3a(local),
+        let index = match &self.place {
+            Place::Same => local,
+            Place::Affine(transform) => transform.transform_point3a(local),
+            Place::Tapered(transform, gather) => gather.point(transform.transform_point3a(local)),
         };
         if (index.cmplt(self.support.min) | index.cmpgt(self.support.max)).any() {
             return V::ZERO;
@@ -43,13 +60,18 @@ impl<V: Voxel> GridField<V> {
 
     /// Lower and upper bound of the values over a box of the volume's space.
     pub fn range(&self, local: &Aabb) -> (V, V) {
-        let index = match &self.grid_from_local {
-            None => *local,
-            Some(transform) => local.transformed(transform),
+        let (index, is_whole) = match &self.place {
+            Place::Same => (*local, true),
+            Place::Affine(transform) => (local.transformed(transform), true),
+            Place::Tapered(transform, gather) => {
+                let around = gather.boxed(&local.transformed(transform), &self.support);
+                let Some(index) = around else { return (V::ZERO, V::ZERO) };
+                (index, false)
+            }
         };
         let (min, max) = self.grid.range(index.min.into(), index.max.into());
         let inside = index.min.cmpge(self.support.min) & index.max.cmple(self.support.max);
-        if inside.all() {
+        if is_whole && inside.all() {
             return (min, max);
         }
         (min.component_min(V::ZERO), max.component_max(V::ZERO))

@@ -12,8 +12,10 @@ mod histogram;
 mod index;
 mod index_box;
 mod leaf;
+mod mass;
 mod parts;
 mod range;
+mod rebase;
 mod sparse_grid;
 mod stats;
 #[cfg(test)]

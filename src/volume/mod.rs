@@ -12,8 +12,10 @@ pub mod medium;
 pub mod phase;
 pub mod procedural;
 mod region;
+mod taper;
 pub mod vdb;
 pub mod world;
 
 pub use local_volume::{CoefficientBounds, MediumProperties, Volume};
 pub use region::Region;
+pub use taper::Taper;

@@ -9,8 +9,8 @@
 //! ```
 //!
 //! [`Directory`] lists what a file holds without touching a voxel and loads single grids; [`read`]
-//! loads everything. Float, double, vec3s and vec3d grids of the usual 5-4-3 tree with an affine
-//! transform are loaded, as full or half floats, compressed by ZIP, Blosc, active masks or not at
+//! loads everything. Half, float and double grids of the usual 5-4-3 tree, and vec3h, vec3s and
+//! vec3d ones, with an affine or a frustum transform are loaded, stored in full or as half floats, compressed by ZIP, Blosc, active masks or not at
 //! all. Other grids are listed with the reason why they are not loaded.
 
 mod blosc;

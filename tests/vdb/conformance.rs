@@ -44,7 +44,6 @@ fn check_file(entry: &Value, result: Result<VdbFile, Error>) {
         let found = find(&file, grid);
         match expected {
             "refuse_tree" => assert!(reason(found).contains("tree with levels 5_5_4_3")),
-            "refuse_transform" => assert!(reason(found).contains("frustum")),
             _ => check_grid(grid, found),
         }
         let is_level_set = expected == "ok_levelset";
@@ -89,7 +88,7 @@ fn check_grid(wanted: &Value, grid: &VdbGrid) {
 
 fn check_transform(wanted: &Value, grid: &VdbGrid) {
     let transform = grid.info.transform;
-    let world = transform.index_to_world.transform_point3(DVec3::new(3.0, -2.0, 5.0));
+    let world = transform.point(DVec3::new(3.0, -2.0, 5.0));
     let rows = &wanted["matrix_rows_rowvector_convention"];
     let columns = transform.index_to_world.matrix3.to_cols_array_2d();
     for axis in 0..3 {
@@ -98,6 +97,9 @@ fn check_transform(wanted: &Value, grid: &VdbGrid) {
         assert_close(transform.voxel_size[axis], size, 1e-9, "voxel size");
         let point = number(&wanted["index_3_m2_5_to_world"][axis]);
         assert_close(world[axis], point, 1e-9, "a point in the world");
+        if transform.taper.is_some() {
+            continue;
+        }
         for row in 0..3 {
             let want = number(&rows[row][axis]);
             assert!((columns[row][axis] - want).abs() < 1e-12, "matrix {columns:?}");

@@ -6,7 +6,7 @@ use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use crate::fixtures::fixture;
-use crate::writer::{Layout, write};
+use crate::writer::{Layout, Scalar, write};
 
 const LAYOUT: Layout = Layout {
     version: 224,
@@ -14,7 +14,7 @@ const LAYOUT: Layout = Layout {
     zip: true,
     active_mask: true,
     half: false,
-    double: false,
+    scalar: Scalar::Float,
     components: 1,
     code: 5,
 };

@@ -73,6 +73,16 @@ fn one_frame_in_eight_encodings_is_one_frame() {
 }
 
 #[test]
+fn native_half_grids_of_format_225() {
+    let Some(path) = shared("volumes/cases/half225.vdb") else { return };
+    let file = read(path);
+    assert_eq!((file.version, file.grids[0].info.value_type()), (225, "half"));
+    let grid = float(&file.grids[0]);
+    assert_eq!((grid.stats().active_voxels, grid.value(IVec3::ZERO)), (925, 1.0));
+    assert_eq!(grid.value(IVec3::new(0, 7, 0)), 0.0);
+}
+
+#[test]
 fn cancelling_stops_the_work() {
     let Some(path) = shared("volumes/smoke.vdb") else { return };
     for calls in [0, 1, 3, 10, 20] {

@@ -13,10 +13,18 @@ pub struct Layout {
     pub zip: bool,
     pub active_mask: bool,
     pub half: bool,
-    pub double: bool,
+    pub scalar: Scalar,
     pub components: usize,
     /// With an active mask, which of the codes 0 to 5 tells the leaf's inactive values.
     pub code: u8,
+}
+
+/// The type of a component.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Scalar {
+    Half,
+    Float,
+    Double,
 }
 
 /// What stands outside everything else.
@@ -80,11 +88,13 @@ impl Writer {
         self.u32(0);
         self.u32(1);
         self.text("density");
-        let value = match (layout.double, layout.components) {
-            (false, 1) => "float",
-            (true, 1) => "double",
-            (false, _) => "vec3s",
-            (true, _) => "vec3d",
+        let value = match (layout.scalar, layout.components) {
+            (Scalar::Half, 1) => "half",
+            (Scalar::Float, 1) => "float",
+            (Scalar::Double, 1) => "double",
+            (Scalar::Half, _) => "vec3h",
+            (Scalar::Float, _) => "vec3s",
+            (Scalar::Double, _) => "vec3d",
         };
         self.text(&format!("Tree_{value}_5_4_3{}", if layout.half { "_HalfFloat" } else { "" }));
         self.text("");
@@ -176,9 +186,10 @@ impl Writer {
     fn value(&mut self, value: f64) {
         for component in 1..=self.layout.components {
             let value = value * component as f64;
-            match self.layout.double {
-                true => self.bytes.extend(value.to_le_bytes()),
-                false => self.bytes.extend((value as f32).to_le_bytes()),
+            match self.layout.scalar {
+                Scalar::Half => self.bytes.extend(f16::from_f64(value).to_le_bytes()),
+                Scalar::Float => self.bytes.extend((value as f32).to_le_bytes()),
+                Scalar::Double => self.bytes.extend(value.to_le_bytes()),
             }
         }
     }

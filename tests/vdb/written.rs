@@ -6,22 +6,25 @@ use flambeau::volume::vdb::{Directory, VdbValues};
 use glam::{DVec3, IVec3};
 
 use crate::writer::{
-    BACKGROUND, LOWER_TILE, Layout, ROOT_TILE, UPPER_TILE, leaf_active, leaf_value, write,
+    BACKGROUND, LOWER_TILE, Layout, ROOT_TILE, Scalar, UPPER_TILE, leaf_active, leaf_value, write,
 };
 
 /// Every combination of what a layout can be.
 fn layouts() -> impl Iterator<Item = Layout> {
     let versions = [220, 222, 225];
-    (0..versions.len() * 64).map(move |n| Layout {
-        version: versions[n / 64],
+    let scalars = [Scalar::Half, Scalar::Float, Scalar::Double];
+    let all = (0..versions.len() * scalars.len() * 32).map(move |n| Layout {
+        version: versions[n / 32 / scalars.len()],
         offsets: n & 1 != 0,
         zip: n & 2 != 0,
         active_mask: n & 4 != 0,
         half: n & 8 != 0,
-        double: n & 16 != 0,
-        components: if n & 32 != 0 { 3 } else { 1 },
+        scalar: scalars[n / 32 % scalars.len()],
+        components: if n & 16 != 0 { 3 } else { 1 },
         code: 0,
-    })
+    });
+    // Grids of native halves are as old as version 225.
+    all.filter(|layout| layout.scalar != Scalar::Half || layout.version == 225)
 }
 
 #[test]

@@ -30,7 +30,7 @@ pub fn is_snapshot(source: &str) -> bool {
 /// # Errors
 /// The file cannot be read, was not written by Flambeau, or its header holds no scene; names it.
 pub fn open(source: &str) -> Result<(Settings, Reopened)> {
-    let path = Path::new(source);
+    let path = &*crate::files::path_of(source);
     let Some(header) = read_info(path)?.header else {
         let reason = "this EXR was not written by Flambeau and contains no scene to open";
         return Err(Error::invalid(source, "", reason));

@@ -23,8 +23,8 @@ pub fn show(
         let help = key_help("volume.N.emission.grid");
         row(ui, "Emission grid", &help, |ui| ui.label(grid));
     }
-    let described = |described: &&GridDescription| Some(&described.name) == grid.as_ref();
-    let voxels = grids.iter().find(described).and_then(|grid| grid.voxels);
+    let described = grid.as_ref().and_then(|name| grids.iter().find(|grid| grid.is_called(name)));
+    let voxels = described.and_then(|grid| grid.voxels);
     let (emission, opened) = (&mut volume.emission, &opened.emission);
     let change = match emission.mode {
         EmissionMode::None => None,
@@ -72,7 +72,9 @@ fn set_mode(volume: &mut VolumeSettings, mode: EmissionMode, grids: &[GridDescri
     let present = volume.emission.grid.clone();
     volume.emission.mode = mode;
     let Some(role) = Role::of_mode(mode) else { return };
-    let same = |grid: &&GridDescription| Some(&grid.name) == present.as_ref() && role.suits(grid);
+    let same = |grid: &&GridDescription| {
+        present.as_ref().is_some_and(|name| grid.is_called(name)) && role.suits(grid)
+    };
     let grid = role.best_of(grids).or_else(|| grids.iter().find(same));
     if let Some(grid) = grid.or_else(|| grids.iter().find(|grid| role.suits(grid))) {
         role.give(volume, grid);

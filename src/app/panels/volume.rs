@@ -146,7 +146,8 @@ fn stands(note: &Note, volume: &VolumeSettings, opened: &VolumeSettings) -> bool
             };
             of(volume) == of(opened)
         }
-        About::Light | About::Sequence => true,
+        About::Placement => volume.translate == opened.translate,
+        About::Light | About::Sequence | About::Framing | About::LeftOut => true,
     }
 }
 

@@ -1,7 +1,5 @@
 //! Asks before unsaved changes of the scene are lost.
 
-use std::path::Path;
-
 use egui::{Context, Ui, ViewportCommand};
 
 use super::app::App;
@@ -48,7 +46,7 @@ impl App {
     /// Opens `source`, or asks first where that would lose changes.
     pub(super) fn open_or_ask(&mut self, source: &str) {
         // What is not there is not opened, so that nothing would be lost.
-        let is_there = source.starts_with("builtin:") || Path::new(source).exists();
+        let is_there = source.starts_with("builtin:") || crate::files::path_of(source).exists();
         if is_there && self.has_unsaved_changes() {
             self.files.path_bar = None;
             self.unsaved.ask(PendingAction::Open(source.to_owned()));

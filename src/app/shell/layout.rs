@@ -202,7 +202,7 @@ impl App {
         let Some(choice) = row.show(ui, |ui| bars::dropped(ui, &name)).inner else { return };
         self.files.dropped = None;
         match choice {
-            Dropped::Open => self.open_or_ask(&path.to_string_lossy()),
+            Dropped::Open => self.open_or_ask(&crate::files::name_of(&path)),
             Dropped::Reference => self.load_reference(&ui.ctx().clone(), path),
             Dropped::Cancelled => {}
         }

@@ -7,6 +7,7 @@ use egui::Context;
 use super::app::App;
 use crate::app::jobs::dialogs::Purpose;
 use crate::app::shell::save::Content;
+use crate::files::name_of;
 
 impl App {
     /// Opens a path or `builtin:NAME`.
@@ -22,14 +23,14 @@ impl App {
         match extension.as_deref().and_then(std::ffi::OsStr::to_str) {
             Some("npy") => self.load_reference(ctx, path.to_owned()),
             Some("exr") => self.files.dropped = Some(path.to_owned()),
-            _ => self.open_or_ask(&path.to_string_lossy()),
+            _ => self.open_or_ask(&name_of(path)),
         }
     }
 
     /// Uses a chosen path for its purpose.
     pub(super) fn take_path(&mut self, ctx: &Context, purpose: Purpose, path: PathBuf) {
         if purpose == Purpose::Open {
-            self.open_or_ask(&path.to_string_lossy());
+            self.open_or_ask(&name_of(&path));
         } else if purpose == Purpose::Reference {
             self.load_reference(ctx, path);
         } else if self.live_render.is_building() {

@@ -117,7 +117,7 @@ impl App {
     pub(super) fn go_on_from_shown(&mut self) {
         let shown = self.snapshots.strip.shown_item();
         if let Some(file) = shown.and_then(|item| self.snapshots.file(item)) {
-            self.open_or_ask(&file.to_string_lossy());
+            self.open_or_ask(&crate::files::name_of(&file));
         }
     }
 

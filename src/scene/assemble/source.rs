@@ -6,13 +6,14 @@ use glam::{Affine3A, DAffine3, Vec3A};
 use crate::error::{Error, Progress, Result};
 use crate::math::{Aabb, Rgb};
 use crate::scene::cache::{GridValues, PlacedGrid, VolumeFile};
+use crate::scene::file_box::FileBox;
 use crate::scene::sequence::Gap;
 use crate::scene::settings::{RampKind, VolumeSettings, VolumeShape};
-use crate::volume::Region;
 use crate::volume::field::{GridField, RgbField, ScalarField, grid_support};
 use crate::volume::procedural;
 use crate::volume::procedural::{Noise, Ramp};
 use crate::volume::vdb::GridClass;
+use crate::volume::{Region, Taper};
 
 /// The grids of a file that a volume has asked for. Its own space is the index space of the first
 /// of them.
@@ -49,10 +50,10 @@ impl<'a> VolumeSource<'a> {
             Self::Shape(shape) => shape.scalar(grid, field),
             Self::Grids(grids) => match grids.place(grid, field)? {
                 None => Ok(ScalarField::Constant(0.0)),
-                Some((GridValues::Float(values), from_local)) => {
-                    Ok(ScalarField::Grid(GridField::new(values, from_local)))
+                Some((GridValues::Float(values), from_local, taper)) => {
+                    Ok(ScalarField::Grid(GridField::new(values, from_local, taper.as_ref())))
                 }
-                Some((GridValues::Vector(_), _)) => {
+                Some((GridValues::Vector(_), ..)) => {
                     let reason = format!("the grid \"{grid}\" holds vectors; name one of numbers");
                     Err(Error::invalid(grids.file.name(), field, reason))
                 }
@@ -67,11 +68,11 @@ impl<'a> VolumeSource<'a> {
             Self::Shape(shape) => shape.scalar(grid, field).map(gray),
             Self::Grids(grids) => Ok(match grids.place(grid, field)? {
                 None => RgbField::Constant(Rgb::ZERO),
-                Some((GridValues::Float(values), from_local)) => {
-                    gray(ScalarField::Grid(GridField::new(values, from_local)))
+                Some((GridValues::Float(values), from_local, taper)) => {
+                    gray(ScalarField::Grid(GridField::new(values, from_local, taper.as_ref())))
                 }
-                Some((GridValues::Vector(values), from_local)) => {
-                    RgbField::Grid(GridField::new(values, from_local))
+                Some((GridValues::Vector(values), from_local, taper)) => {
+                    RgbField::Grid(GridField::new(values, from_local, taper.as_ref()))
                 }
             }),
         }
@@ -111,7 +112,11 @@ impl<'a> GridSource<'a> {
 
     /// The values of a grid, and the transform to its index space from the volume's own; `None` for
     /// a grid that the file lacks and that counts as zero.
-    fn place(&mut self, name: &str, field: &str) -> Result<Option<(GridValues, Affine3A)>> {
+    fn place(
+        &mut self,
+        name: &str,
+        field: &str,
+    ) -> Result<Option<(GridValues, Affine3A, Option<Taper>)>> {
         if (self.lacks)(name)? {
             let (file, grid) = (self.file.name().to_owned(), name.to_owned());
             self.gaps.push(Gap::Grid { file, grid });
@@ -130,7 +135,7 @@ impl<'a> GridSource<'a> {
         self.voxel = self.voxel.min(shortest_edge(&local_from_grid));
         let local_from_grid = local_from_grid.as_affine3a();
         self.bounds = self.bounds.union(&support(&grid).transformed(&local_from_grid));
-        Ok(Some((grid.values, local_from_grid.inverse())))
+        Ok(Some((grid.values, local_from_grid.inverse(), grid.taper)))
     }
 }
 
@@ -197,10 +202,14 @@ fn noise(settings: &VolumeSettings) -> Noise {
     }
 }
 
+/// The box that a grid fills, in its index space or, of a frustum, around it in spread space.
 fn support(grid: &PlacedGrid) -> Aabb {
-    match &grid.values {
-        GridValues::Float(values) => grid_support(values),
-        GridValues::Vector(values) => grid_support(values),
+    match (grid.taper, grid.bounds(), &grid.values) {
+        (Some(taper), Some(voxels), _) => {
+            FileBox::around(&voxels, &DAffine3::IDENTITY, Some(&taper)).to_aabb()
+        }
+        (_, _, GridValues::Float(values)) => grid_support(values),
+        (_, _, GridValues::Vector(values)) => grid_support(values),
     }
 }
 

@@ -53,7 +53,8 @@ pub(super) fn instances(
 
 /// A volume in its place.
 fn placed(built: BuiltVolume, settings: &VolumeSettings, key: &str) -> Result<Instance> {
-    let world_from_local = world_from_file(settings) * built.file_from_local.as_affine3a();
+    // Both may be far away and their product near, so that it is rounded only at the end.
+    let world_from_local = (world_from_file(settings) * built.file_from_local).as_affine3a();
     if !(world_from_local.is_finite() && world_from_local.inverse().is_finite()) {
         let field = if settings.matrix.is_some() { "matrix" } else { "scale" };
         let reason = "places the volume too small, too large or too far away to be drawn";

@@ -2,39 +2,42 @@
 
 use glam::Vec3A;
 
+use super::candidate::Candidate;
 use super::grid_columns::{FAIRLY, columns, quantile};
 use super::note::{About, Note};
-use super::roles::Candidate;
 use crate::format::two_digits;
-use crate::math::{Aabb, luminance};
+use crate::math::luminance;
+use crate::scene::file_box::FileBox;
 use crate::scene::grid_names::kelvin_scale;
 use crate::scene::role::{Role, flame_stops};
 use crate::scene::settings::{EmissionMode, EmissionSettings, Normalize};
 use crate::volume::blackbody;
 
-/// The settings of the emission of a grid, so bright that a fairly bright line along `axis` shows
-/// the radiance that is wanted.
+/// The settings of the emission of grids of one name, as it is read from the first of them; so
+/// bright that a fairly bright line along `axis` shows the radiance that is wanted.
 pub(super) fn emission_settings(
-    candidate: &Candidate,
+    grids: &[&Candidate],
     role: Role,
     wanted_radiance: f32,
-    bounds: &Aabb,
+    bounds: &FileBox,
     axis: usize,
     notes: &mut Vec<Note>,
 ) -> EmissionSettings {
-    let name = &candidate.grid.name;
+    let Some(first) = grids.first() else { return EmissionSettings::default() };
+    let name = &first.grid.name;
+    let max = grids.iter().map(|grid| grid.max).fold(0.0, f32::max);
     let mut emission = EmissionSettings { grid: Some(name.clone()), ..EmissionSettings::default() };
     let what = match role {
         Role::Temperature => {
             emission.mode = EmissionMode::Blackbody;
             emission.normalize = Some(Normalize::T4);
-            let scale = kelvin_scale(candidate.max);
+            let scale = kelvin_scale(max);
             emission.kelvin_scale = Some(scale);
             format!("a temperature (temperature × {scale} K)")
         }
         Role::Flame => {
             emission.mode = EmissionMode::Ramp;
-            emission.stops = Some(flame_stops(candidate.max));
+            emission.stops = Some(flame_stops(max));
             "the flame, through a color ramp".to_owned()
         }
         Role::Emission | Role::Density => {
@@ -44,7 +47,7 @@ pub(super) fn emission_settings(
     };
     notes.push(Note::new(About::Emission, format!("\"{name}\" is {what}")));
     let brightness = brightness_of(&emission);
-    let sums = columns(&candidate.grid, bounds, axis, brightness);
+    let sums = columns(grids, bounds, axis, brightness);
     let scale = quantile(&sums, FAIRLY).map_or(1.0, |sum| two_digits(wanted_radiance / sum));
     match emission.mode {
         EmissionMode::Grid => emission.scale = Some(scale),

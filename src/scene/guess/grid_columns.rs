@@ -1,11 +1,11 @@
 //! Integrals of a grid's values along parallel lines through it (its columns), for its thickness
 //! and brightness as seen from outside, and the bounds of the part that is seen.
 
-use glam::Vec3A;
+use glam::{DVec3, Vec3A};
 
-use crate::math::Aabb;
+use super::candidate::Candidate;
 use crate::scene::cache::{GridValues, PlacedGrid};
-use crate::scene::describe::grid_bounds;
+use crate::scene::file_box::FileBox;
 
 /// Lines across each of the two other axes.
 const LINES: usize = 32;
@@ -19,25 +19,26 @@ const VISIBLE: f32 = 0.1;
 /// The lines of sight that count as fairly thick and fairly bright.
 pub(super) const FAIRLY: f32 = 0.8;
 
-/// ∫ of `measure` of the grid's value along lines through `bounds` (in the file's space) in the
-/// direction of `axis`, of every line that meets anything, in ascending order.
+/// ∫ of `measure` of the values of all `grids` along lines through `bounds` (in the file's space)
+/// in the direction of `axis`, of every line that meets anything, in ascending order.
 pub(super) fn columns(
-    grid: &PlacedGrid,
-    bounds: &Aabb,
+    grids: &[&Candidate],
+    bounds: &FileBox,
     axis: usize,
     measure: impl Fn(Vec3A) -> f32,
 ) -> Vec<f32> {
-    let value = reader(grid);
-    let step = bounds.size()[axis] / SAMPLES as f32;
-    let fraction = |index: usize, count: usize| (index as f32 + 0.5) / count as f32;
-    let line = |u: f32, v: f32| {
+    let values: Vec<_> = grids.iter().map(|candidate| reader(&candidate.grid)).collect();
+    let step = (bounds.size()[axis] / SAMPLES as f64) as f32;
+    let fraction = |index: usize, count: usize| (index as f64 + 0.5) / count as f64;
+    let line = |u: f64, v: f64| {
         let sum: f32 = (0..SAMPLES)
             .map(|i| {
-                let mut place = Vec3A::ZERO;
+                let mut place = DVec3::ZERO;
                 place[axis] = fraction(i, SAMPLES);
                 place[(axis + 1) % 3] = u;
                 place[(axis + 2) % 3] = v;
-                measure(value(bounds.min + place * bounds.size()))
+                let place = bounds.min + place * bounds.size();
+                values.iter().map(|value| measure(value(place))).sum::<f32>()
             })
             .sum();
         sum * step
@@ -50,27 +51,33 @@ pub(super) fn columns(
     sums
 }
 
-/// The box around what is seen of a grid: the samples that reach a tenth of its `mean`.
-pub(super) fn visible_bounds(grid: &PlacedGrid, mean: f32) -> Option<Aabb> {
-    let bounds = grid_bounds(grid)?;
-    let value = reader(grid);
-    let half_cell = 0.5 * bounds.size() / LATTICE as f32;
-    let mut visible = Aabb::EMPTY;
-    for index in 0..LATTICE * LATTICE * LATTICE {
+/// The box around what is seen of a grid: the samples that reach a tenth of its mean.
+pub(super) fn visible_bounds(candidate: &Candidate) -> Option<FileBox> {
+    let bounds = candidate.core;
+    let value = reader(&candidate.grid);
+    let half_cell = 0.5 * bounds.size() / LATTICE as f64;
+    let cells = (0..LATTICE * LATTICE * LATTICE).filter_map(|index| {
         let cell = [index % LATTICE, index / LATTICE % LATTICE, index / (LATTICE * LATTICE)];
-        let center = bounds.min + Vec3A::from_array(cell.map(|i| (2 * i + 1) as f32)) * half_cell;
-        if value(center).max_element() > VISIBLE * mean {
-            visible = visible.union(&Aabb::new(center - half_cell, center + half_cell));
-        }
-    }
-    (!visible.is_empty()).then_some(visible)
+        let center = bounds.min + DVec3::from_array(cell.map(|i| (2 * i + 1) as f64)) * half_cell;
+        let is_seen = value(center).max_element() > VISIBLE * candidate.mean;
+        is_seen.then(|| FileBox { min: center - half_cell, max: center + half_cell })
+    });
+    cells.reduce(FileBox::union)
 }
 
 /// The grid's value at a place in the file's space; single numbers are splat.
-fn reader(grid: &PlacedGrid) -> impl Fn(Vec3A) -> Vec3A {
-    let index_from_file = grid.world_from_index.inverse().as_affine3a();
+fn reader(grid: &PlacedGrid) -> impl Fn(DVec3) -> Vec3A {
+    let index_from_file = grid.world_from_index.inverse();
     move |place| {
-        let index = index_from_file.transform_point3a(place);
+        let index = index_from_file.transform_point3(place);
+        let index = match &grid.taper {
+            None => index,
+            Some(taper) => match taper.gather(index) {
+                Some(index) => index,
+                None => return Vec3A::ZERO,
+            },
+        };
+        let index = index.as_vec3a();
         match &grid.values {
             GridValues::Float(values) => Vec3A::splat(values.sample(index)),
             GridValues::Vector(values) => values.sample(index),

@@ -13,9 +13,15 @@ pub enum About {
     Light,
     /// The frames of a sequence.
     Sequence,
+    /// The part of the volume that the camera frames.
+    Framing,
+    /// The place that a volume far from the origin was moved to.
+    Placement,
+    /// A grid that could not be used.
+    LeftOut,
 }
 
-/// A guess in words.
+/// A guess in words, or a fact about the file that decided one.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Note {
     /// Subject of the note.
@@ -33,6 +39,9 @@ impl Note {
 
 impl std::fmt::Display for Note {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "guessed: {}", self.text)
+        match self.about {
+            About::Framing | About::LeftOut => f.write_str(&self.text),
+            _ => write!(f, "guessed: {}", self.text),
+        }
     }
 }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::{FramesOnDisk, Pattern};
 use crate::error::{Error, Result};
+use crate::files::{name_of, path_of};
 use crate::scene::files::{has_extension, resolve};
 
 /// A numbered set of volume files, and the frame that it opens at.
@@ -30,7 +31,7 @@ impl NumberedSet {
             let [frame, _] = files.range();
             return Ok(Some(Self { pattern, files, frame }));
         }
-        let path = Path::new(name);
+        let path = &*path_of(name);
         // A file that is not there is reported by its own name.
         if !path.is_file() {
             return Ok(None);
@@ -53,8 +54,8 @@ impl NumberedSet {
             if sets.values().any(|set| set.pattern.number_of_path(path).is_some()) {
                 continue;
             }
-            let name = resolve(&path.display().to_string(), Path::new(""), "")?;
-            if let Some((pattern, files, frame)) = FramesOnDisk::around(Path::new(&name))? {
+            let name = resolve(&name_of(path), Path::new(""))?;
+            if let Some((pattern, files, frame)) = FramesOnDisk::around(&path_of(&name))? {
                 sets.insert(pattern.spelling(), Self { pattern, files, frame });
             }
         }

@@ -3,6 +3,8 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::files::path_of;
+
 /// Most digits of a number.
 const MOST_DIGITS: usize = 7;
 
@@ -20,7 +22,7 @@ impl Pattern {
     /// The pattern that `name` spells out, by `####` or `%04d` in the name of the file; the last of
     /// several. `None` for a name without a place for a number, and for files of that very name.
     pub fn spelled(name: &str) -> Option<Self> {
-        let path = Path::new(name);
+        let path = &*path_of(name);
         let file = path.file_name()?.to_str()?;
         let (before, width, after) = hashes(file).or_else(|| percent(file))?;
         if path.exists() {

@@ -4,6 +4,7 @@ use std::fmt;
 
 use super::{Frames, FramesOnDisk, Pattern, Shown};
 use crate::error::Result;
+use crate::files::name_of;
 use crate::scene::settings::{TimeSettings, VolumeSettings};
 
 /// The file that a volume shows in a frame.
@@ -83,16 +84,15 @@ pub fn volume_frame(volume: &VolumeSettings, time: &TimeSettings) -> Result<Volu
         return Ok(VolumeFrame { file: Some(name.clone()), ..VolumeFrame::default() });
     };
     let frames = Frames { files: &files, range: volume.frame_range, outside: volume.outside };
-    let missing = |frame, held| {
-        Some(Gap::Frame { file: pattern.file(frame).display().to_string(), frame, held })
-    };
+    let missing =
+        |frame, held| Some(Gap::Frame { file: name_of(&pattern.file(frame)), frame, held });
     let (file, gap) = match frames.at(time.whole_frame().saturating_add(volume.frame_offset)) {
         Shown::File(file) => (Some(file), None),
         Shown::Held(frame, file) => (Some(file), missing(frame, Some(file.number))),
         Shown::Missing(frame) => (None, missing(frame, None)),
         Shown::Nothing => (None, None),
     };
-    let name = |file: &super::FrameFile| file.path.display().to_string();
+    let name = |file: &super::FrameFile| name_of(&file.path);
     Ok(VolumeFrame { file: file.map(name), fullest: files.fullest().map(name), gap })
 }
 

@@ -1,4 +1,9 @@
-//! Values of optional keys.
+//! Values of optional keys, and values that need not be written.
+
+/// Whether a value need not be written, since it is what an absent key means.
+pub(super) fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}
 
 /// Writes a method for each optional key: its value, or the default that its schema names too.
 macro_rules! or_default {

@@ -3,8 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::is_default;
-use super::or_default::or_default;
+use super::or_default::{is_default, or_default};
 use super::{Albedo, Axis, Color, EmissionSettings, Extent, MAX_FRAME};
 
 const HALF_SIZE: Extent = Extent::Uniform(1.0);
@@ -31,7 +30,7 @@ pub struct VolumeSettings {
     /// Flambeau. `fire_####.vdb` or `fire_%04d.vdb` is a sequence, one file a frame.
     pub file: Option<String>,
     /// The file's frame less that of the scene.
-    #[schemars(extend("unit" = "frames"), range(min = -MAX_FRAME, max = MAX_FRAME))]
+    #[schemars(extend("unit" = "frames", "default" = 0), range(min = -MAX_FRAME, max = MAX_FRAME))]
     #[serde(skip_serializing_if = "is_default")]
     pub frame_offset: i32,
     /// The first and the last frame of the files that are shown; absent, those on the disk.
@@ -39,6 +38,7 @@ pub struct VolumeSettings {
     #[schemars(extend("minimum" = -MAX_FRAME, "maximum" = MAX_FRAME))]
     pub frame_range: Option<[i32; 2]>,
     /// What is shown before the first frame of the files and after the last.
+    #[schemars(extend("default" = "hold"))]
     #[serde(skip_serializing_if = "is_default")]
     pub outside: Outside,
     /// A shape instead of a file, filled with the value 1 unless said otherwise.
@@ -159,7 +159,8 @@ pub enum RampKind {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct DensitySettings {
-    /// The grid that density is read from.
+    /// The grid that density is read from. Of several grids of one name, `density[1]` is the
+    /// second.
     #[schemars(extend("default" = "density"))]
     pub grid: Option<String>,
     /// Extinction per unit length = scale * value of the grid. 0 makes the smoke invisible.

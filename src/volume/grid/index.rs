@@ -7,7 +7,7 @@ use super::index_box::IndexBox;
 /// log2 of the bricks along the edge of a node; below, of a brick's edge and of a node's in voxels.
 const NODE_BITS: i32 = 4;
 const BRICK_BITS: i32 = 3;
-const NODE_VOXEL_BITS: i32 = NODE_BITS + BRICK_BITS;
+pub(super) const NODE_VOXEL_BITS: i32 = NODE_BITS + BRICK_BITS;
 /// Bricks along the edge of a node.
 pub(super) const NODE_EDGE: i32 = 1 << NODE_BITS;
 /// Bricks in a node.
@@ -130,6 +130,19 @@ impl Index {
                     }
                 }
                 found < wanted
+            }
+        }
+    }
+
+    /// Moves every node by `-shift` nodes, where all stay in the range of coordinates.
+    pub fn shift(&mut self, shift: IVec3) {
+        match &mut self.table {
+            IndexTable::Dense { origin, .. } => *origin -= shift << NODE_VOXEL_BITS,
+            IndexTable::Sparse { positions, .. } => {
+                // The order is by position, and the same move of all keeps it.
+                for position in positions {
+                    *position = (IVec3::from_array(*position) - shift).to_array();
+                }
             }
         }
     }

@@ -23,7 +23,8 @@ impl<V: Voxel> SparseGrid<V> {
         self.range_of_cells(&IndexBox { min: low, max: high })
     }
 
-    fn range_of_cells(&self, cells: &IndexBox) -> (V, V) {
+    /// As [`SparseGrid::range`], over the cells from each voxel of `cells` to the next.
+    pub(super) fn range_of_cells(&self, cells: &IndexBox) -> (V, V) {
         let nodes = IndexBox { min: node_of(cells.min), max: node_of(cells.max) };
         let mut range = None;
         let mut include = |more: (V, V)| {

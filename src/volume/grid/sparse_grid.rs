@@ -23,6 +23,8 @@ pub struct SparseGrid<V> {
     pub(super) total_range: (V, V),
     pub(super) background: V,
     pub(super) bounds: Option<IndexBox>,
+    /// Voxel of the grid as it was stored that is voxel 0 here.
+    pub(super) origin: IVec3,
     pub(super) stats: GridStats<V>,
 }
 
@@ -42,7 +44,8 @@ impl<V: Voxel> SparseGrid<V> {
         let background = bricks[0][0];
         let total_range = node_ranges.iter().copied().fold((background, background), union);
         let (bounds, stats) = (summary.bounds, summary.stats(memory));
-        Self { index, bricks, ranges, node_ranges, total_range, background, bounds, stats }
+        let origin = IVec3::ZERO;
+        Self { index, bricks, ranges, node_ranges, total_range, background, bounds, origin, stats }
     }
 
     /// The value wherever nothing was stored.

@@ -56,7 +56,7 @@ pub struct GridInfo {
     pub type_name: String,
     /// Class of the grid.
     pub class: GridClass,
-    /// Whether the values are stored as half floats.
+    /// Whether values of a wider type are stored as half floats.
     pub is_half: bool,
     /// Transform from index space to the world; [`Transform::IDENTITY`] if it is why the grid is
     /// unsupported.
@@ -152,7 +152,7 @@ impl Descriptor {
             false => header.compression,
         };
         let metadata = metadata::read(stream)?;
-        let (transform, refused) = match transform::read(stream) {
+        let (transform, refused) = match transform::read(stream, header.version) {
             Ok(transform) => (transform, None),
             Err(Fault::Unsupported(reason)) if header.has_offsets => {
                 (Transform::IDENTITY, Some(reason))
@@ -207,6 +207,8 @@ fn split_type(type_name: &str) -> Option<(&str, &str)> {
 fn stored_values(type_name: &str) -> Option<(Scalar, usize)> {
     let (values, LEVELS) = split_type(type_name)? else { return None };
     Some(match values {
+        "half" => (Scalar::F16, 1),
+        "vec3h" | "vec3H" | "Vec3H" => (Scalar::F16, 3),
         "float" => (Scalar::F32, 1),
         "double" => (Scalar::F64, 1),
         "vec3s" => (Scalar::F32, 3),
@@ -221,12 +223,12 @@ fn stored_values(type_name: &str) -> Option<(Scalar, usize)> {
 /// Reason why trees of this type are not loaded, if they are not.
 fn unsupported_type(type_name: &str) -> Option<String> {
     match (split_type(type_name), stored_values(type_name)) {
-        (_, Some((Scalar::F32 | Scalar::F64, _))) => None,
+        (_, Some((Scalar::F16 | Scalar::F32 | Scalar::F64, _))) => None,
         (Some((values, LEVELS)), _) if values.starts_with("pt") => Some(format!(
             "points ('{type_name}'); rasterize them to a density grid before exporting"
         )),
         (Some((values, LEVELS)), _) => Some(format!(
-            "values of type {values}; only float, double, vec3s and vec3d grids are loaded"
+            "values of type {values}; only float, double and half grids, and vec3 grids of these, are loaded"
         )),
         (Some((_, levels)), _) => Some(format!(
             "a tree with levels {levels} instead of the usual {LEVELS}; save the grid with \

@@ -31,9 +31,9 @@ pub struct VdbGrid {
 /// The voxels of a grid.
 #[derive(Clone, Debug)]
 pub enum VdbValues {
-    /// The voxels of a float or double grid.
+    /// The voxels of a half, float or double grid.
     Float(Arc<SparseGrid<f32>>),
-    /// The voxels of a vec3s or vec3d grid.
+    /// The voxels of a vec3h, vec3s or vec3d grid.
     Vec3(Arc<SparseGrid<Vec3A>>),
     /// Voxels that are not loaded, for this reason.
     Unsupported(String),

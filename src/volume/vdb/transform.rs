@@ -3,20 +3,24 @@
 use glam::{DAffine3, DMat4, DVec3};
 
 use super::stream::{Fault, Result, Stream};
+use crate::volume::Taper;
 
 /// Index space to world with column vectors, and the lengths of a voxel's edges in the world.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transform {
     /// World position = `index_to_world` x index position; voxel (i, j, k) is a sample at the
-    /// image of (i, j, k).
+    /// image of (i, j, k). Of a frustum the affine part alone, from spread space on.
     pub index_to_world: DAffine3,
-    /// Edges of a voxel along i, j and k, in world units.
+    /// Edges of a voxel along i, j and k, in world units; of a frustum those in its near slice.
     pub voxel_size: DVec3,
+    /// The part of a frustum transform that is not affine.
+    pub taper: Option<Taper>,
 }
 
 impl Transform {
     /// Index space itself.
-    pub const IDENTITY: Self = Self { index_to_world: DAffine3::IDENTITY, voxel_size: DVec3::ONE };
+    pub const IDENTITY: Self =
+        Self { index_to_world: DAffine3::IDENTITY, voxel_size: DVec3::ONE, taper: None };
 
     fn new(index_to_world: DAffine3) -> Result<Self> {
         let matrix = index_to_world.matrix3;
@@ -29,15 +33,32 @@ impl Transform {
                     .into(),
             ));
         }
-        Ok(Self { index_to_world, voxel_size: DVec3::new(x, y, z) })
+        Ok(Self { index_to_world, voxel_size: DVec3::new(x, y, z), taper: None })
+    }
+
+    /// World position of a position in index space.
+    pub fn point(&self, index: DVec3) -> DVec3 {
+        self.index_to_world.transform_point3(self.taper.map_or(index, |taper| taper.spread(index)))
     }
 }
 
-/// Reads the type of the map and the map. A map of another kind is [`Fault::Unsupported`].
-pub(super) fn read(stream: &mut Stream) -> Result<Transform> {
+/// From this version on the box of a frustum is stored as floating-point numbers.
+const FRUSTUM_OF_DOUBLES: u32 = 221;
+
+/// Reads the type of the map and the map, of a file of that `version`. A map of another kind is
+/// [`Fault::Unsupported`].
+pub(super) fn read(stream: &mut Stream, version: u32) -> Result<Transform> {
     stream.enter("transform");
     let map = stream.text()?;
-    let affine = match map.as_str() {
+    match map.as_str() {
+        "NonlinearFrustumMap" => frustum(stream, version),
+        map => Transform::new(affine(stream, map)?),
+    }
+}
+
+/// Reads an affine map of that type.
+fn affine(stream: &mut Stream, map: &str) -> Result<DAffine3> {
+    Ok(match map {
         "UniformScaleMap" | "ScaleMap" => {
             let [scale, ..] = vectors::<5>(stream)?;
             DAffine3::from_scale(scale)
@@ -48,20 +69,40 @@ pub(super) fn read(stream: &mut Stream) -> Result<Transform> {
         }
         "TranslationMap" => DAffine3::from_translation(vectors::<1>(stream)?[0]),
         "AffineMap" | "UnitaryMap" => matrix(stream)?,
-        "NonlinearFrustumMap" => {
-            return Err(Fault::Unsupported(
-                "a frustum transform (voxels that widen away from a camera); resample the grid \
-                 into a box before exporting it"
-                    .into(),
-            ));
-        }
         other => {
             return Err(Fault::Unsupported(format!(
                 "a transform of type '{other}'; export the grid with an affine transform"
             )));
         }
+    })
+}
+
+/// Reads a frustum: the box of its index space, which becomes one unit wide at the near end,
+/// widened to 1 / taper at the far one, and `depth` deep; then an affine map to the world.
+fn frustum(stream: &mut Stream, version: u32) -> Result<Transform> {
+    let [min, max] = match version < FRUSTUM_OF_DOUBLES {
+        true => [integers(stream)?, integers(stream)?],
+        false => vectors::<2>(stream)?,
     };
-    Transform::new(affine)
+    let (taper, depth) = (stream.f64()?, stream.f64()?);
+    let map = stream.text()?;
+    let world_from_unit = affine(stream, &map)?;
+    let size = max - min;
+    if !(size.is_finite() && size.min_element() > 0.0 && taper.is_finite() && taper > 0.0) {
+        return Err(Fault::Unsupported(
+            "a frustum transform without extent or with a tip; give its ends a size above zero"
+                .into(),
+        ));
+    }
+    let spread = DVec3::new(1.0 / size.x, 1.0 / size.x, depth / size.z);
+    let transform = Transform::new(world_from_unit * DAffine3::from_scale(spread))?;
+    let center = (0.5 * (min + max)).truncate();
+    let taper = Taper { center, near: min.z, growth: (1.0 / taper - 1.0) / size.z };
+    Ok(Transform { taper: Some(taper), ..transform })
+}
+
+fn integers(stream: &mut Stream) -> Result<DVec3> {
+    Ok(DVec3::new(stream.i32()?.into(), stream.i32()?.into(), stream.i32()?.into()))
 }
 
 /// Reads adjacent vectors; scale maps keep values derived from the scale behind it.
@@ -100,7 +141,40 @@ mod tests {
     }
 
     fn read_map(name: &str, values: &[f64]) -> Result<Transform> {
-        read(&mut Stream::new(&map(name, values), 0, ""))
+        read(&mut Stream::new(&map(name, values), 0, ""), 224)
+    }
+
+    /// A frustum over the box from (-8, -8, -8) to (9, 14, 8), 10 deep, that doubles its width.
+    fn frustum_bytes(version: u32, taper: f64) -> Vec<u8> {
+        let corners = [-8, -8, -8, 9, 14, 8];
+        let mut bytes = map("NonlinearFrustumMap", &[]);
+        match version < 221 {
+            true => corners.iter().for_each(|c: &i32| bytes.extend(c.to_le_bytes())),
+            false => corners.iter().for_each(|&c| bytes.extend(f64::from(c).to_le_bytes())),
+        }
+        [taper, 10.0].iter().for_each(|value| bytes.extend(value.to_le_bytes()));
+        bytes.extend(map("ScaleMap", &[0.1; 15]));
+        bytes
+    }
+
+    #[test]
+    fn frustums_widen_with_depth() {
+        for version in [220, 221, 225] {
+            let bytes = frustum_bytes(version, 0.5);
+            let transform = read(&mut Stream::new(&bytes, 0, ""), version).unwrap();
+            let world = transform.point(DVec3::new(3.0, -2.0, 5.0));
+            let expected = DVec3::new(0.026_654_411_764, -0.053_308_823_529, 0.8125);
+            assert!((world - expected).length() < 1e-9, "{world}");
+            assert_eq!(transform.voxel_size.z, 0.0625);
+            for length in 0..bytes.len() {
+                let cut = read(&mut Stream::new(&bytes[..length], 0, ""), version);
+                assert!(matches!(cut, Err(Fault::Broken { .. })), "{length}");
+            }
+        }
+        for taper in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            let found = read(&mut Stream::new(&frustum_bytes(224, taper), 0, ""), 224);
+            assert!(matches!(found, Err(Fault::Unsupported(_))), "{taper}");
+        }
     }
 
     #[test]

@@ -12,6 +12,7 @@ use crate::volume::grid::Voxel;
 /// Storage type of a component.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Scalar {
+    F16,
     F32,
     F64,
     /// Some other type that is stepped over, never decoded.
@@ -37,14 +38,16 @@ impl ValueLayout {
     pub fn value_bytes(&self) -> usize {
         self.components
             * match self.scalar {
+                Scalar::F16 => 2,
                 Scalar::F32 => 4,
                 Scalar::F64 => 8,
                 Scalar::Opaque { bytes } => bytes,
             }
     }
 
+    /// Whether buffers hold half floats in place of the type's own.
     fn is_half(&self) -> bool {
-        self.half && !matches!(self.scalar, Scalar::Opaque { .. })
+        self.half && matches!(self.scalar, Scalar::F32 | Scalar::F64)
     }
 
     fn buffer<'a>(&self, stream: &mut Stream<'a>, count: usize) -> Result<Buffer<'a>> {
@@ -60,6 +63,7 @@ impl ValueLayout {
     pub fn value<V: Voxel>(&self, bytes: &[u8]) -> V {
         let mut value = [V::ZERO];
         match self.scalar {
+            Scalar::F16 => decode(bytes, &mut value, |bytes| f16::from_le_bytes(bytes).to_f32()),
             Scalar::F64 => decode(bytes, &mut value, |bytes| f64::from_le_bytes(bytes) as f32),
             _ => decode(bytes, &mut value, f32::from_le_bytes),
         }
@@ -68,7 +72,9 @@ impl ValueLayout {
 
     fn decode_buffer<V: Voxel>(&self, bytes: &[u8], values: &mut [V]) {
         match (self.is_half(), self.scalar) {
-            (true, _) => decode(bytes, values, |bytes| f16::from_le_bytes(bytes).to_f32()),
+            (true, _) | (_, Scalar::F16) => {
+                decode(bytes, values, |bytes| f16::from_le_bytes(bytes).to_f32());
+            }
             (false, Scalar::F64) => decode(bytes, values, |bytes| f64::from_le_bytes(bytes) as f32),
             (false, _) => decode(bytes, values, f32::from_le_bytes),
         }
