@@ -13,7 +13,7 @@ use crate::math::{Rgb, mean};
 /// The version of the paths, raised whenever (scene, strategy, seed, pixel, sample) leads to
 /// another path than before. Snapshots carry it: samples of two versions come from two estimators
 /// or two series of random numbers, so that only those of the same version are continued.
-pub const PATH_VERSION: u64 = 3;
+pub const PATH_VERSION: u64 = 4;
 
 /// Contribution of one path to its pixel: four parts that sum to the beauty, and auxiliary values.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
