@@ -70,9 +70,13 @@ impl App {
                 DialogAnswer::Cancelled => {}
             }
         }
-        let dropped = ctx.input(|input| input.raw.dropped_files.last().cloned());
-        if let Some(file) = dropped {
-            self.take_dropped(ctx, file.path());
+        // Of several files the first by name: of a numbered set that is its first frame.
+        let dropped = ctx.input(|input| {
+            let files = input.raw.dropped_files.iter();
+            files.map(|file| file.path().to_owned()).min()
+        });
+        if let Some(path) = dropped {
+            self.take_dropped(ctx, &path);
         }
     }
 
