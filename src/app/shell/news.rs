@@ -26,7 +26,15 @@ impl App {
                     self.sweep.forget();
                     self.notices = Notices::default();
                     self.note_opened_file(&source);
-                    self.opened.source = self.name_of(source);
+                    // A sequence goes by the name of all its files.
+                    let file = self.editor.document.settings.volume.first();
+                    let file = file.and_then(|volume| volume.file.as_deref());
+                    let pattern = file.filter(|file| Pattern::spelled(file).is_some());
+                    let is_bare = !scene::is_scene(&source) && reopened.is_none();
+                    self.opened.source = match pattern.filter(|_| is_bare) {
+                        Some(pattern) => pattern.to_owned(),
+                        None => self.name_of(source),
+                    };
                     self.compare.versus = None;
                     self.compare.region.remove();
                     self.watch_files();
