@@ -1,5 +1,7 @@
 //! `flambeau info`: what is in a volume, a snapshot or a scene.
 
+mod json;
+
 use std::fmt::{Debug, Write};
 use std::path::Path;
 
@@ -7,24 +9,34 @@ use serde::Serialize;
 
 use super::console::print;
 use super::exit::{Exit, Refusal};
-use crate::error::{NO_PROGRESS, Result};
+use crate::error::{Error, NO_PROGRESS, Result};
 use crate::format::mebibytes;
 use crate::image::exr::{Info, read_info};
 use crate::scene::settings::VolumeSettings;
 use crate::scene::{self, GridDescription, Settings, VolumeCache};
-use crate::volume::vdb::GridInfo;
+use crate::volume::file::GridInfo;
 
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
     /// A volume, a snapshot (.exr), a scene (.toml) or `builtin:NAME`.
     #[arg(value_name = "FILE")]
     file: String,
+    /// Tells of a volume as JSON: its grids with type, class, transform, bounds and statistics.
+    #[arg(long)]
+    json: bool,
 }
 
 pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
     let file = arguments.file.as_str();
     let ending = Path::new(file).extension().and_then(|ending| ending.to_str());
     let text = match ending.unwrap_or_default().to_ascii_lowercase().as_str() {
+        ending if arguments.json => {
+            if ending == "exr" || scene::is_scene(file) {
+                let reason = "only a volume is told of as JSON; leave out --json";
+                return Err(Refusal::usage(Error::invalid(file, "--json", reason)));
+            }
+            json::volume(file)?
+        }
         "exr" => snapshot(&read_info(Path::new(file))?),
         _ if scene::is_scene(file) => summary(&scene::load(file)?),
         _ => volume(file)?,
@@ -54,8 +66,8 @@ fn volume(file: &str) -> Result<String> {
     let opened = cache.file(file, NO_PROGRESS)?;
     let directory = opened.directory();
     let mut report = InfoText::default();
-    let (version, count) = (directory.version, description.grids.len());
-    report.title(&format!("OpenVDB file, format {version}, {count} grids"));
+    let (version, count) = (&directory.version, description.grids.len());
+    report.title(&format!("{} file, format {version}, {count} grids", directory.format));
     for (name, value) in &description.metadata {
         report.row(name, value);
     }

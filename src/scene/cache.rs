@@ -12,8 +12,8 @@ use super::sequence::Gap;
 use super::settings::VolumeSettings;
 use crate::error::{Error, Progress, Result};
 use crate::volume::Volume;
-use crate::volume::grid::{IndexBox, SparseGrid};
-use crate::volume::vdb::{Directory, GridClass, GridInfo, VdbValues};
+use crate::volume::file::{Directory, GridInfo};
+use crate::volume::grid::{GridClass, IndexBox, SparseGrid, VoxelValues};
 
 /// Volume files and the volumes built from them, shared by everything that builds scenes.
 #[derive(Default)]
@@ -45,7 +45,7 @@ pub struct VolumeFile {
     name: String,
     stamp: Option<Stamp>,
     directory: Directory,
-    grids: Mutex<Vec<Option<VdbValues>>>,
+    grids: Mutex<Vec<Option<VoxelValues>>>,
 }
 
 /// Time and size of a file, which tell whether it has changed.
@@ -178,10 +178,10 @@ impl VolumeFile {
 
     /// Memory of the grids that were loaded, in bytes.
     fn bytes(&self) -> usize {
-        let bytes = |values: &VdbValues| match values {
-            VdbValues::Float(grid) => grid.stats().memory_bytes,
-            VdbValues::Vec3(grid) => grid.stats().memory_bytes,
-            VdbValues::Unsupported(_) => 0,
+        let bytes = |values: &VoxelValues| match values {
+            VoxelValues::Float(grid) => grid.stats().memory_bytes,
+            VoxelValues::Vec3(grid) => grid.stats().memory_bytes,
+            VoxelValues::Unsupported(_) => 0,
         };
         locked(&self.grids).iter().flatten().map(bytes).sum()
     }
@@ -230,9 +230,9 @@ impl VolumeFile {
             }
         };
         let values = match values {
-            VdbValues::Float(grid) => GridValues::Float(grid),
-            VdbValues::Vec3(grid) => GridValues::Vector(grid),
-            VdbValues::Unsupported(reason) => {
+            VoxelValues::Float(grid) => GridValues::Float(grid),
+            VoxelValues::Vec3(grid) => GridValues::Vector(grid),
+            VoxelValues::Unsupported(reason) => {
                 let reason = format!("the grid \"{}\" cannot be rendered: {reason}", info.name);
                 return Err(Error::unsupported(&self.name, field, reason));
             }

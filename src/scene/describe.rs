@@ -7,8 +7,8 @@ use super::cache::{GridValues, PlacedGrid, Stamp, VolumeCache, VolumeFile, stamp
 use super::sequence::listed;
 use crate::error::{Progress, Result};
 use crate::math::Aabb;
+use crate::volume::file::GridInfo;
 use crate::volume::grid::Histogram;
-use crate::volume::vdb::GridInfo;
 
 /// A volume file in words and numbers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -101,7 +101,7 @@ fn grid(
     let half = if info.is_half { "half " } else { "" };
     Ok(GridDescription {
         name: info.name.clone(),
-        type_name: format!("{half}{}", info.value_type()),
+        type_name: format!("{half}{}", info.value_type),
         class: info.class.to_string(),
         voxel_size: info.transform.voxel_size.to_array(),
         voxels,

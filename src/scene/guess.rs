@@ -120,7 +120,7 @@ fn nothing_to_see(file: &VolumeFile) -> Error {
         .directory()
         .grids
         .iter()
-        .map(|grid| format!("\"{}\" ({}, {})", grid.name, grid.type_name, grid.class))
+        .map(|grid| format!("\"{}\" ({}, {})", grid.name, grid.value_type, grid.class))
         .collect();
     let reason = if grids.is_empty() {
         "there are no grids in this file; export it again".to_owned()

@@ -4,7 +4,7 @@ use crate::error::Result;
 use crate::scene::cache::{GridValues, PlacedGrid};
 use crate::scene::grid_names::{DENSITY, EMISSION, FLAME, OTHER, TEMPERATURE};
 use crate::scene::role::Role;
-use crate::volume::vdb::GridClass;
+use crate::volume::grid::GridClass;
 
 /// A grid of numbers or colors that is worth rendering.
 pub(super) struct Candidate {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::{FramesOnDisk, Pattern};
 use crate::error::{Error, Result};
-use crate::scene::files::{has_extension, resolve};
+use crate::scene::files::{is_named_volume, resolve};
 
 /// A numbered set of volume files, and the frame that it opens at.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -46,7 +46,7 @@ impl NumberedSet {
     pub fn of_folder(folder: &Path) -> Result<Self> {
         let entries = std::fs::read_dir(folder).map_err(|e| Error::io(folder, e))?;
         let paths = entries.filter_map(|entry| entry.ok().map(|entry| entry.path()));
-        let mut volumes: Vec<PathBuf> = paths.filter(|path| has_extension(path, "vdb")).collect();
+        let mut volumes: Vec<PathBuf> = paths.filter(|path| is_named_volume(path)).collect();
         volumes.sort();
         let mut sets: BTreeMap<PathBuf, Self> = BTreeMap::new();
         for path in &volumes {
@@ -61,7 +61,7 @@ impl NumberedSet {
         let largest = sets.into_values().rev().max_by_key(|set| set.files.files().len());
         let mut set = largest.ok_or_else(|| {
             let reason = match volumes.as_slice() {
-                [] => "there are no volumes (.vdb) in this folder".to_owned(),
+                [] => "there are no volumes (.vdb, .nvdb) in this folder".to_owned(),
                 [first, ..] => format!(
                     "there is no numbered set of volumes in this folder; name a file in it, such \
                      as {}",

@@ -1,37 +1,9 @@
-//! The map from index space to the world.
+//! The maps from index space to the world, as files have them.
 
 use glam::{DAffine3, DMat4, DVec3};
 
 use super::stream::{Fault, Result, Stream};
-
-/// Index space to world with column vectors, and the lengths of a voxel's edges in the world.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Transform {
-    /// World position = `index_to_world` x index position; voxel (i, j, k) is a sample at the
-    /// image of (i, j, k).
-    pub index_to_world: DAffine3,
-    /// Edges of a voxel along i, j and k, in world units.
-    pub voxel_size: DVec3,
-}
-
-impl Transform {
-    /// Index space itself.
-    pub const IDENTITY: Self = Self { index_to_world: DAffine3::IDENTITY, voxel_size: DVec3::ONE };
-
-    fn new(index_to_world: DAffine3) -> Result<Self> {
-        let matrix = index_to_world.matrix3;
-        let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(DVec3::length);
-        let volume = matrix.determinant().abs();
-        if !(index_to_world.is_finite() && volume.is_finite() && volume > 0.0) {
-            return Err(Fault::Unsupported(
-                "a transform that flattens space or is not finite; give the grid a voxel size \
-                 above zero"
-                    .into(),
-            ));
-        }
-        Ok(Self { index_to_world, voxel_size: DVec3::new(x, y, z) })
-    }
-}
+use crate::volume::grid::Transform;
 
 /// Reads the type of the map and the map. A map of another kind is [`Fault::Unsupported`].
 pub(super) fn read(stream: &mut Stream) -> Result<Transform> {
@@ -61,7 +33,7 @@ pub(super) fn read(stream: &mut Stream) -> Result<Transform> {
             )));
         }
     };
-    Transform::new(affine)
+    Transform::new(affine).ok_or_else(|| Fault::Unsupported(Transform::UNUSABLE.into()))
 }
 
 /// Reads adjacent vectors; scale maps keep values derived from the scale behind it.

@@ -1,0 +1,32 @@
+//! The map from index space to the world.
+
+use glam::{DAffine3, DVec3};
+
+/// Index space to world with column vectors, and the lengths of a voxel's edges in the world.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Transform {
+    /// World position = `index_to_world` x index position; voxel (i, j, k) is a sample at the
+    /// image of (i, j, k).
+    pub index_to_world: DAffine3,
+    /// Edges of a voxel along i, j and k, in world units.
+    pub voxel_size: DVec3,
+}
+
+impl Transform {
+    /// Index space itself.
+    pub const IDENTITY: Self = Self { index_to_world: DAffine3::IDENTITY, voxel_size: DVec3::ONE };
+
+    /// Reason why a map is refused.
+    pub const UNUSABLE: &str = "a transform that flattens space or is not finite; give the grid a \
+                                voxel size above zero";
+
+    /// The transform with this map; `None`, with [`Transform::UNUSABLE`] as the reason, if it
+    /// flattens space or is not finite.
+    pub fn new(index_to_world: DAffine3) -> Option<Self> {
+        let matrix = index_to_world.matrix3;
+        let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(DVec3::length);
+        let volume = matrix.determinant().abs();
+        let usable = index_to_world.is_finite() && volume.is_finite() && volume > 0.0;
+        usable.then_some(Self { index_to_world, voxel_size: DVec3::new(x, y, z) })
+    }
+}
