@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use divan::counter::{BytesCount, ItemsCount};
 use divan::{Bencher, black_box};
 use flambeau::error::NO_PROGRESS;
-use flambeau::volume::grid::SparseGrid;
-use flambeau::volume::vdb::{self, VdbValues};
+use flambeau::volume::grid::{SparseGrid, VoxelValues};
+use flambeau::volume::vdb;
 use glam::{IVec3, UVec3, Vec3A};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -147,7 +147,7 @@ mod dense {
 fn sample_cloud(bencher: Bencher) {
     let Some(path) = find("assets/cloud.vdb") else { return };
     let Ok(file) = vdb::read(path, NO_PROGRESS) else { return };
-    let Some(VdbValues::Float(grid)) = file.grids.first().map(|grid| grid.values.clone()) else {
+    let Some(VoxelValues::Float(grid)) = file.grids.first().map(|grid| grid.values.clone()) else {
         return;
     };
     run(bencher, &coherent_positions(), |position| grid.sample(position));

@@ -2,7 +2,9 @@
 
 mod folder;
 mod identity;
+mod memory;
 mod name;
+mod reading;
 mod target;
 
 use std::fs::File;
@@ -15,7 +17,9 @@ use tempfile::NamedTempFile;
 use crate::error::{Error, Progress, Result, report};
 use folder::folder_of;
 pub(crate) use identity::Identity;
+pub(crate) use memory::reserve;
 pub use name::{name_of, path_of};
+pub(crate) use reading::{first_bytes, read_whole};
 pub(crate) use target::Target;
 
 /// Writes a file as a whole or not at all: to a temporary name in the same folder, which takes the

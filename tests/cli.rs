@@ -651,6 +651,17 @@ fn info_tells_what_is_in_a_file() {
     }
     assert!(place.succeed(&["info", "builtin:torch"]).starts_with("Scene"));
     assert!(place.succeed(&["info", "builtin:torch_hd"]).starts_with("OpenVDB"));
+    let json: Value = serde_json::from_str(&place.succeed(&["info", "--json", assets])).unwrap();
+    assert_eq!((&json["format"], &json["version"]), (&"OpenVDB".into(), &"224".into()));
+    let density =
+        &json["grids"].as_array().unwrap().iter().find(|g| g["name"] == "density").unwrap();
+    assert_eq!((&density["type"], &density["class"]), (&"half float".into(), &"fog volume".into()));
+    assert_eq!(density["active_voxels"], 89_411);
+    assert!(density["max"].as_f64().unwrap() > density["mean"].as_f64().unwrap());
+    assert_eq!(density["transform"][2].as_array().unwrap().len(), 4);
+    assert!(density["index_bounds"][0][0].is_i64() && density.get("unsupported").is_none());
+    let (code, _, stderr) = place.run(&["info", "--json", "scene.toml"]);
+    assert!(code == 2 && stderr.contains("--json"), "{stderr}");
     let (code, _, stderr) = place.run(&["info", "builtin:nothing"]);
     assert_eq!(code, 1);
     assert!(stderr.contains("builtin:torch_hd"), "{stderr}");

@@ -120,8 +120,8 @@ impl Command {
                 CTRL,
                 Key::O,
                 "Open…",
-                "Open a scene (.toml) or a volume (.vdb), or resume a snapshot (.exr). Files can \
-                 also be dropped on the window.",
+                "Open a scene (.toml) or a volume (.vdb, .nvdb), or resume a snapshot (.exr). \
+                 Files can also be dropped on the window.",
             ),
             C::OpenPath => (
                 CTRL,

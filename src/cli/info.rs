@@ -1,5 +1,7 @@
 //! `flambeau info`: what is in a volume, a snapshot or a scene.
 
+mod json;
+
 use std::fmt::{Debug, Write};
 
 use serde::Serialize;
@@ -7,19 +9,23 @@ use serde::Serialize;
 use super::console::print;
 use super::exit::{Exit, Refusal};
 use super::values::file_name;
-use crate::error::{NO_PROGRESS, Result};
+use crate::error::{Error, NO_PROGRESS, Result};
 use crate::files::path_of;
 use crate::format::{in_steps, mebibytes};
 use crate::image::exr::{Info, read_info};
+use crate::scene::sequence::NumberedSet;
 use crate::scene::settings::VolumeSettings;
 use crate::scene::{self, GridDescription, Settings, VolumeCache};
-use crate::volume::vdb::GridInfo;
+use crate::volume::file::GridInfo;
 
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
     /// A volume, a snapshot (.exr), a scene (.toml) or `builtin:NAME`.
     #[arg(value_name = "FILE", value_parser = file_name())]
     file: String,
+    /// Tells of a volume as JSON: its grids with type, class, transform, bounds and statistics.
+    #[arg(long)]
+    json: bool,
 }
 
 pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
@@ -27,6 +33,13 @@ pub fn run(arguments: &Arguments) -> Result<Exit, Refusal> {
     let path = path_of(file);
     let ending = path.extension().and_then(|ending| ending.to_str());
     let text = match ending.unwrap_or_default().to_ascii_lowercase().as_str() {
+        ending if arguments.json => {
+            if ending == "exr" || scene::is_scene(file) {
+                let reason = "only a volume is told of as JSON; leave out --json";
+                return Err(Refusal::usage(Error::invalid(file, "--json", reason)));
+            }
+            json::volume(file)?
+        }
         "exr" => snapshot(&read_info(&path)?),
         _ if scene::is_scene(file) => summary(&scene::load(file)?),
         _ => volume(file)?,
@@ -53,11 +66,14 @@ impl InfoText {
 fn volume(file: &str) -> Result<String> {
     let cache = VolumeCache::default();
     let description = scene::describe(file, &cache, NO_PROGRESS)?;
-    let opened = cache.file(file, NO_PROGRESS)?;
+    let opened = cache.file(&description.file, NO_PROGRESS)?;
     let directory = opened.directory();
     let mut report = InfoText::default();
-    let (version, count) = (directory.version, description.grids.len());
-    report.title(&format!("OpenVDB file, format {version}, {count} grids"));
+    if let Some(set) = NumberedSet::of_pattern_or_folder(file)? {
+        sequence(&mut report, &set);
+    }
+    let (version, count) = (&directory.version, description.grids.len());
+    report.title(&format!("{} file, format {version}, {count} grids", directory.format));
     for (name, value) in &description.metadata {
         report.row(name, value);
     }
@@ -65,6 +81,22 @@ fn volume(file: &str) -> Result<String> {
         describe_grid(&mut report, grid, info);
     }
     Ok(report.0)
+}
+
+/// The frames of a sequence, of which the largest file is described.
+fn sequence(report: &mut InfoText, set: &NumberedSet) {
+    report.title(&format!("Sequence {}", set.pattern.spelling().display()));
+    let [first, last] = set.files.range();
+    report.row("frames", format!("{first} to {last}, {} files", set.files.files().len()));
+    let holes = set.files.holes();
+    let in_words = |[from, to]: &[i32; 2]| match from == to {
+        true => from.to_string(),
+        false => format!("{from} to {to}"),
+    };
+    if !holes.is_empty() {
+        report.row("missing", holes.iter().map(in_words).collect::<Vec<_>>().join(", "));
+    }
+    report.row("largest file", set.fullest().display().to_string());
 }
 
 fn describe_grid(report: &mut InfoText, grid: &GridDescription, info: &GridInfo) {

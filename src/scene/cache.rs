@@ -12,8 +12,8 @@ use super::settings::VolumeSettings;
 use super::{embedded, grid_address};
 use crate::error::{Error, Progress, Result};
 use crate::files::path_of;
-use crate::volume::grid::{IndexBox, SparseGrid};
-use crate::volume::vdb::{Directory, GridClass, GridInfo, VdbValues};
+use crate::volume::file::{Directory, GridInfo};
+use crate::volume::grid::{GridClass, IndexBox, SparseGrid, VoxelValues};
 use crate::volume::{Taper, Volume};
 
 /// Volume files and the volumes built from them, shared by everything that builds scenes.
@@ -46,7 +46,7 @@ pub struct VolumeFile {
     name: String,
     stamp: Option<Stamp>,
     directory: Directory,
-    grids: Mutex<Vec<Option<VdbValues>>>,
+    grids: Mutex<Vec<Option<VoxelValues>>>,
 }
 
 /// Time and size of a file, which tell whether it has changed.
@@ -183,10 +183,10 @@ impl VolumeFile {
 
     /// Memory of the grids that were loaded, in bytes.
     fn bytes(&self) -> usize {
-        let bytes = |values: &VdbValues| match values {
-            VdbValues::Float(grid) => grid.stats().memory_bytes,
-            VdbValues::Vec3(grid) => grid.stats().memory_bytes,
-            VdbValues::Unsupported(_) => 0,
+        let bytes = |values: &VoxelValues| match values {
+            VoxelValues::Float(grid) => grid.stats().memory_bytes,
+            VoxelValues::Vec3(grid) => grid.stats().memory_bytes,
+            VoxelValues::Unsupported(_) => 0,
         };
         locked(&self.grids).iter().flatten().map(bytes).sum()
     }
@@ -234,9 +234,9 @@ impl VolumeFile {
             }
         };
         let values = match values {
-            VdbValues::Float(grid) => GridValues::Float(grid),
-            VdbValues::Vec3(grid) => GridValues::Vector(grid),
-            VdbValues::Unsupported(reason) => {
+            VoxelValues::Float(grid) => GridValues::Float(grid),
+            VoxelValues::Vec3(grid) => GridValues::Vector(grid),
+            VoxelValues::Unsupported(reason) => {
                 let address = self.address(index);
                 let reason = format!("the grid \"{address}\" cannot be rendered: {reason}");
                 return Err(Error::unsupported(&self.name, field, reason));
@@ -298,11 +298,11 @@ impl PlacedGrid {
 }
 
 /// The values with their voxels near the origin, as look-ups in single precision need them.
-fn rebased(mut values: VdbValues) -> VdbValues {
+fn rebased(mut values: VoxelValues) -> VoxelValues {
     match &mut values {
-        VdbValues::Float(grid) => Arc::get_mut(grid).into_iter().for_each(SparseGrid::rebase),
-        VdbValues::Vec3(grid) => Arc::get_mut(grid).into_iter().for_each(SparseGrid::rebase),
-        VdbValues::Unsupported(_) => {}
+        VoxelValues::Float(grid) => Arc::get_mut(grid).into_iter().for_each(SparseGrid::rebase),
+        VoxelValues::Vec3(grid) => Arc::get_mut(grid).into_iter().for_each(SparseGrid::rebase),
+        VoxelValues::Unsupported(_) => {}
     }
     values
 }

@@ -5,7 +5,7 @@ use super::describe::GridDescription;
 use super::grid_names::{BLENDER_KELVIN, KELVIN_FROM, hottest};
 use super::role::Role;
 use super::settings::{Axis, VolumeSettings};
-use crate::volume::vdb::{Directory, MetaValue};
+use crate::volume::file::{Directory, MetaValue};
 
 /// A program that simulates fire and smoke.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,11 +5,11 @@ use serde::Serialize;
 use super::cache::{GridValues, PlacedGrid, Stamp, VolumeCache, VolumeFile, stamp_of};
 use super::file_box::FileBox;
 use super::grid_address;
-use super::sequence::listed;
+use super::sequence::NumberedSet;
 use crate::error::{Error, Progress, Result};
 use crate::files::name_of;
+use crate::volume::file::GridInfo;
 use crate::volume::grid::Histogram;
-use crate::volume::vdb::GridInfo;
 
 /// A volume file in words and numbers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -68,7 +68,7 @@ impl GridDescription {
     }
 }
 
-/// Describes a volume file, or the largest file of a sequence; what is read of it stays in `cache`.
+/// Describes a volume file, or the largest file of a sequence, by its pattern or folder; what is read of it stays in `cache`.
 ///
 /// # Errors
 /// The file cannot be read or a grid of it is damaged; names it.
@@ -94,9 +94,8 @@ pub fn stamp(name: &str) -> Option<Stamp> {
 
 /// The file that [`describe`] describes: the largest of a sequence, else `name` itself.
 fn described_file(name: &str) -> Result<String> {
-    let frames = listed(name)?;
-    let fullest = frames.as_ref().and_then(|(_, files)| files.fullest());
-    Ok(fullest.map_or(name.to_owned(), |file| name_of(&file.path)))
+    let set = NumberedSet::of_pattern_or_folder(name)?;
+    Ok(set.map_or(name.to_owned(), |set| name_of(&set.fullest())))
 }
 
 fn grid(
@@ -113,11 +112,11 @@ fn grid(
             Err(error) => return Err(error),
         },
     };
-    let is_packed = info.is_half && !matches!(info.value_type(), "half" | "vec3h");
+    let is_packed = info.is_half && !matches!(info.value_type.as_str(), "half" | "vec3h");
     let half = if is_packed { "half " } else { "" };
     Ok(GridDescription {
         name: file.address(index),
-        type_name: format!("{half}{}", info.value_type()),
+        type_name: format!("{half}{}", info.value_type),
         class: info.class.to_string(),
         voxel_size: info.transform.voxel_size.to_array(),
         voxels,

@@ -6,6 +6,7 @@ use std::path::{Component, Path, PathBuf};
 use super::keys;
 use crate::error::{Error, Result};
 use crate::files::{name_of, path_of};
+use crate::volume::file::EXTENSIONS;
 
 /// Prefix of the names of embedded scenes and volumes.
 pub(super) const BUILTIN: &str = "builtin:";
@@ -56,6 +57,11 @@ pub(super) fn relative(file: &str, folder: &Path) -> String {
 /// Whether the name ends in `.extension`, in any case.
 pub(super) fn has_extension(path: &Path, extension: &str) -> bool {
     path.extension().and_then(OsStr::to_str).is_some_and(|e| e.eq_ignore_ascii_case(extension))
+}
+
+/// Whether the name ends as those of volume files do. Which file is one, its content tells.
+pub(super) fn is_named_volume(path: &Path) -> bool {
+    EXTENSIONS.iter().any(|extension| has_extension(path, extension))
 }
 
 /// The path with `.` and `..` carried out on its text. The folder it starts from has no symbolic

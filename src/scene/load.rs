@@ -9,6 +9,7 @@ use super::sequence::NumberedSet;
 use super::{Overrides, Settings, VolumeCache, apply, embedded, guess, parse};
 use crate::error::{Error, NO_PROGRESS, Progress, Result};
 use crate::files::{name_of, path_of};
+use crate::volume::file::Format;
 
 /// A scene or volume that was opened.
 #[derive(Clone, Debug, PartialEq)]
@@ -58,15 +59,16 @@ pub fn open(
     if let Some(frames) = sequence_named(source)? {
         return sequence(&frames, overrides, cache, progress);
     }
-    if source.starts_with(BUILTIN) || files::has_extension(path, "vdb") {
+    if is_volume(source, path)? {
         let name = files::resolve(source, Path::new(""))?;
         let guess = guess::guess(&cache.file(&name, progress)?, progress)?;
         let settings = apply(&guess.settings, overrides)?;
         return Ok(Opened { settings, notes: guess.notes });
     }
     if !files::has_extension(path, "toml") {
-        let reason = "expected a scene (.toml), a volume (.vdb), a folder of numbered volumes, in the \
-                      window a snapshot (.exr), or the name of an embedded scene (builtin:torch)";
+        let reason = "expected a scene (.toml), a volume (.vdb, .nvdb), a folder of numbered \
+                      volumes, in the window a snapshot (.exr), or the name of an embedded scene \
+                      (builtin:torch)";
         return Err(Error::unsupported(source, "", reason));
     }
     let text = std::fs::read_to_string(path).map_err(|e| Error::io(path, e))?;
@@ -79,7 +81,7 @@ fn sequence_named(source: &str) -> Result<Option<NumberedSet>> {
     if path.is_dir() {
         return NumberedSet::of_folder(path).map(Some);
     }
-    if source.starts_with(BUILTIN) || !files::has_extension(path, "vdb") {
+    if source.starts_with(BUILTIN) || !files::is_named_volume(path) {
         return Ok(None);
     }
     NumberedSet::of_name(&files::resolve(source, Path::new(""))?)
@@ -103,6 +105,18 @@ fn sequence(
     settings.time.frame = f64::from(set.frame);
     guess.notes.push(Note::new(About::Sequence, set.in_words()));
     Ok(Opened { settings: apply(&settings, overrides)?, notes: guess.notes })
+}
+
+/// Whether the source is to be opened as a volume: one that is embedded, a file that is one by its
+/// first bytes, or one that should be by its name, which then gets to hear why it is none.
+fn is_volume(source: &str, path: &Path) -> Result<bool> {
+    if source.starts_with(BUILTIN) {
+        return Ok(true);
+    }
+    if files::has_extension(path, "toml") {
+        return Ok(false);
+    }
+    Ok(files::is_named_volume(path) || path.exists() && Format::is_of(path)?)
 }
 
 fn scene(text: &str, source: &str, folder: &Path, overrides: &Overrides) -> Result<Opened> {

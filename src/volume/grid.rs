@@ -8,6 +8,7 @@
 mod assemble;
 mod bricks;
 mod builder;
+mod class;
 mod histogram;
 mod index;
 mod index_box;
@@ -20,12 +21,17 @@ mod sparse_grid;
 mod stats;
 #[cfg(test)]
 mod tests;
+mod transform;
 mod voxel;
+mod voxel_values;
 
 pub use builder::GridBuilder;
+pub use class::GridClass;
 pub use histogram::{BINS, Histogram};
 pub use index_box::IndexBox;
 pub use leaf::Leaf;
 pub use sparse_grid::SparseGrid;
 pub use stats::GridStats;
+pub use transform::Transform;
 pub use voxel::Voxel;
+pub use voxel_values::VoxelValues;

@@ -13,13 +13,11 @@
 //! vec3d ones, with an affine or a frustum transform are loaded, stored in full or as half floats, compressed by ZIP, Blosc, active masks or not at
 //! all. Other grids are listed with the reason why they are not loaded.
 
-mod blosc;
 mod compression;
 mod directory;
 mod entry;
 mod file;
 mod header;
-mod inflate;
 mod metadata;
 mod stream;
 mod transform;
@@ -29,10 +27,10 @@ mod values;
 use std::path::Path;
 
 pub use directory::Directory;
-pub use entry::{GridClass, GridInfo};
-pub use file::{VdbFile, VdbGrid, VdbValues};
+pub use entry::GridInfo;
+pub use file::{VdbFile, VdbGrid};
+pub(super) use header::{check_start, is_openvdb};
 pub use metadata::{MetaValue, Metadata};
-pub use transform::Transform;
 
 use crate::error::{Progress, Result};
 

@@ -76,3 +76,17 @@ fn mistakes_with_frames_name_what_helps() {
     refused(&all(&["empty"]), 1, "there are no volumes");
     refused(&all(&["set", "--set", "volume.0.density.grid='smoke'"]), 1, "no grid \"smoke\"");
 }
+
+#[test]
+fn a_sequence_is_described_by_its_frames_and_its_largest_file() {
+    let place = place();
+    let text = place.succeed(&["info", "set/fire_####.vdb"]);
+    for words in ["fire_####.vdb", "1 to 4, 3 files", "missing       3\n", "fire_0001.vdb"] {
+        assert!(text.contains(words), "{words} is not in {text}");
+    }
+    let json: serde_json::Value =
+        serde_json::from_str(&place.succeed(&["info", "--json", "set"])).unwrap();
+    assert_eq!(json["sequence"]["frames"], serde_json::json!([1, 2, 4]));
+    assert_eq!(json["sequence"]["missing"], serde_json::json!([[3, 3]]));
+    assert!(!place.succeed(&["info", "set/fire_0002.vdb"]).contains("Sequence"));
+}

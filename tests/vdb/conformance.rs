@@ -1,8 +1,8 @@
 //! Every file of the conformance collection against what its manifest says.
 
 use flambeau::error::{Error, NO_PROGRESS};
-use flambeau::volume::grid::{IndexBox, SparseGrid, Voxel};
-use flambeau::volume::vdb::{self, GridClass, VdbFile, VdbGrid, VdbValues};
+use flambeau::volume::grid::{GridClass, IndexBox, SparseGrid, Voxel, VoxelValues};
+use flambeau::volume::vdb::{self, VdbFile, VdbGrid};
 use glam::{DVec3, IVec3};
 use serde_json::Value;
 
@@ -64,7 +64,7 @@ fn find<'a>(file: &'a VdbFile, wanted: &Value) -> &'a VdbGrid {
 
 fn reason(grid: &VdbGrid) -> &str {
     match &grid.values {
-        VdbValues::Unsupported(reason) => reason,
+        VoxelValues::Unsupported(reason) => reason,
         other => panic!("should be refused: {other:?}"),
     }
 }
@@ -76,12 +76,12 @@ fn check_grid(wanted: &Value, grid: &VdbGrid) {
     assert_eq!(grid.info.class.to_string(), wanted["class"].as_str().unwrap());
     check_transform(wanted, grid);
     match (&grid.values, wanted["value_type"].as_str().unwrap()) {
-        (VdbValues::Float(values), "float" | "double") => check_values(wanted, values),
-        (VdbValues::Vec3(values), "vec3s" | "vec3d") => check_values(wanted, values),
-        (VdbValues::Unsupported(reason), "int32" | "int64" | "vec3i" | "bool") => {
+        (VoxelValues::Float(values), "float" | "double") => check_values(wanted, values),
+        (VoxelValues::Vec3(values), "vec3s" | "vec3d") => check_values(wanted, values),
+        (VoxelValues::Unsupported(reason), "int32" | "int64" | "vec3i" | "bool") => {
             assert!(reason.contains("only float"), "{reason}");
         }
-        (VdbValues::Unsupported(reason), "ptdataidx32") => assert!(reason.contains("points")),
+        (VoxelValues::Unsupported(reason), "ptdataidx32") => assert!(reason.contains("points")),
         (values, type_name) => panic!("{type_name} became {values:?}"),
     }
 }

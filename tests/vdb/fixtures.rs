@@ -1,8 +1,8 @@
 //! Small files that OpenVDB 10 wrote, in the repository, with what it says is in them.
 
 use flambeau::error::NO_PROGRESS;
-use flambeau::volume::grid::IndexBox;
-use flambeau::volume::vdb::{self, Directory, GridClass, VdbValues};
+use flambeau::volume::grid::{GridClass, IndexBox, VoxelValues};
+use flambeau::volume::vdb::{self, Directory};
 use glam::{DVec3, IVec3, Vec3, Vec3A};
 
 use crate::shared::{assert_close, float, read};
@@ -91,10 +91,10 @@ fn what_cannot_be_loaded_says_why_and_does_not_stand_in_the_way() {
     let file = read(fixture("points_then_float"));
     let grid = |name| file.grids.iter().find(|grid| grid.info.name == name).unwrap();
     assert_eq!(float(grid("density")).stats().active_voxels, 2487);
-    let VdbValues::Unsupported(reason) = &grid("points").values else { panic!() };
+    let VoxelValues::Unsupported(reason) = &grid("points").values else { panic!() };
     assert!(reason.contains("points") && reason.contains("rasterize"), "{reason}");
     let deep = read(fixture("tree_5_5_4_3"));
-    let VdbValues::Unsupported(reason) = &deep.grids[0].values else { panic!() };
+    let VoxelValues::Unsupported(reason) = &deep.grids[0].values else { panic!() };
     assert!(reason.contains("5_5_4_3"), "{reason}");
     let message = vdb::read(fixture("bad_lfs_pointer"), NO_PROGRESS).unwrap_err().to_string();
     assert!(message.contains("git lfs pull") && message.contains("bad_lfs_pointer.vdb"));
@@ -108,7 +108,7 @@ fn single_grids_are_loaded_from_the_list() {
     let index = directory.grids.iter().position(|grid| grid.name == "density").unwrap();
     assert!(directory.grids[index].unsupported.is_none());
     assert!(directory.grids[1 - index].unsupported.is_some());
-    let VdbValues::Float(grid) = directory.load(index, NO_PROGRESS).unwrap() else { panic!() };
+    let VoxelValues::Float(grid) = directory.load(index, NO_PROGRESS).unwrap() else { panic!() };
     assert_eq!(grid.stats().active_voxels, 2487);
     assert!(directory.load(2, NO_PROGRESS).is_err());
     assert!(directory.metadata.is_empty() || directory.version == 224);

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use flambeau::error::NO_PROGRESS;
-use flambeau::volume::grid::SparseGrid;
-use flambeau::volume::vdb::{self, VdbFile, VdbGrid, VdbValues};
+use flambeau::volume::grid::{SparseGrid, VoxelValues};
+use flambeau::volume::vdb::{self, VdbFile, VdbGrid};
 
 /// A file or folder shared between checkouts; `None`, said aloud, where there is none.
 pub fn shared(name: &str) -> Option<PathBuf> {
@@ -43,7 +43,7 @@ pub fn read(path: impl AsRef<std::path::Path>) -> VdbFile {
 
 pub fn float(grid: &VdbGrid) -> &Arc<SparseGrid<f32>> {
     match &grid.values {
-        VdbValues::Float(grid) => grid,
+        VoxelValues::Float(grid) => grid,
         other => panic!("{} is no float grid but {other:?}", grid.info.name),
     }
 }

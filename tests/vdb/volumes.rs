@@ -1,7 +1,8 @@
 //! Volumes from Houdini, Blender and OpenUSD, and the ones that are shipped.
 
 use flambeau::error::{Error, NO_PROGRESS};
-use flambeau::volume::vdb::{self, VdbFile, VdbValues};
+use flambeau::volume::grid::VoxelValues;
+use flambeau::volume::vdb::{self, VdbFile};
 use glam::{IVec3, Vec3A};
 
 use crate::shared::{assert_close, float, read, shared, shared_volumes};
@@ -27,9 +28,11 @@ fn every_grid_has_the_voxels_that_its_metadata_announce() {
                 grid.info.metadata.get(key).map(ToString::to_string).unwrap_or_default()
             };
             let (count, bounds) = match &grid.values {
-                VdbValues::Float(grid) => (grid.stats().active_voxels, grid.stats().active_bounds),
-                VdbValues::Vec3(grid) => (grid.stats().active_voxels, grid.stats().active_bounds),
-                VdbValues::Unsupported(_) => continue,
+                VoxelValues::Float(grid) => {
+                    (grid.stats().active_voxels, grid.stats().active_bounds)
+                }
+                VoxelValues::Vec3(grid) => (grid.stats().active_voxels, grid.stats().active_bounds),
+                VoxelValues::Unsupported(_) => continue,
             };
             if noted("file_voxel_count").is_empty() {
                 continue;

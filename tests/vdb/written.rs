@@ -1,8 +1,8 @@
 //! The layouts that the fixtures do not cover.
 
 use flambeau::error::NO_PROGRESS;
-use flambeau::volume::grid::{SparseGrid, Voxel};
-use flambeau::volume::vdb::{Directory, VdbValues};
+use flambeau::volume::grid::{SparseGrid, Voxel, VoxelValues};
+use flambeau::volume::vdb::Directory;
 use glam::{DVec3, IVec3};
 
 use crate::writer::{
@@ -47,8 +47,8 @@ fn read_back(layout: &Layout) {
     assert_eq!(grid.info.is_half, layout.half);
     assert_eq!(grid.info.transform.voxel_size, DVec3::splat(2.0));
     match &grid.values {
-        VdbValues::Float(grid) if layout.components == 1 => check(grid, layout),
-        VdbValues::Vec3(grid) if layout.components == 3 => check(grid, layout),
+        VoxelValues::Float(grid) if layout.components == 1 => check(grid, layout),
+        VoxelValues::Vec3(grid) if layout.components == 3 => check(grid, layout),
         other => panic!("{layout:?} became {other:?}"),
     }
 }

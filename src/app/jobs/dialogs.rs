@@ -5,6 +5,7 @@ use std::sync::mpsc;
 use std::time::{Duration, Instant};
 
 use crate::app::command::Command;
+use crate::volume::file::EXTENSIONS;
 
 /// Purpose of a path that the user is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -143,8 +144,9 @@ fn describe(purpose: Purpose, suggested: &Path) -> rfd::FileDialog {
     };
     match purpose {
         Purpose::Open => {
+            let endings = [&["toml", "exr"][..], &EXTENSIONS].concat();
             return dialog
-                .add_filter("Scenes, volumes and snapshots", &["toml", "vdb", "exr"])
+                .add_filter("Scenes, volumes and snapshots", &endings[..])
                 .add_filter("All files", &["*"]);
         }
         Purpose::Reference => {

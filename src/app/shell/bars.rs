@@ -116,7 +116,9 @@ impl PathBar {
 
     fn line(&mut self, ui: &mut Ui) -> Typed {
         let (label, hint, confirm) = match self.purpose {
-            Purpose::Open => ("Open", "path of a .toml, .vdb or .exr, or builtin:NAME", "Open"),
+            Purpose::Open => {
+                ("Open", "path of a .toml, .vdb, .nvdb or .exr, or builtin:NAME", "Open")
+            }
             Purpose::SaveExr => ("Save EXR as", "path of the .exr", "Save"),
             Purpose::SavePng => ("Save PNG as", "path of the .png", "Save"),
             Purpose::SaveScene => ("Save scene as", "path of the .toml", "Save"),

@@ -10,9 +10,9 @@ use crate::scene::file_box::FileBox;
 use crate::scene::sequence::Gap;
 use crate::scene::settings::{RampKind, VolumeSettings, VolumeShape};
 use crate::volume::field::{GridField, RgbField, ScalarField, grid_support};
+use crate::volume::grid::GridClass;
 use crate::volume::procedural;
 use crate::volume::procedural::{Noise, Ramp};
-use crate::volume::vdb::GridClass;
 use crate::volume::{Region, Taper};
 
 /// The grids of a file that a volume has asked for. Its own space is the index space of the first

@@ -4,8 +4,9 @@ use crate::error::{Error, Progress, Result};
 use crate::scene::cache::{GridValues, PlacedGrid, VolumeFile};
 use crate::scene::file_box::FileBox;
 use crate::scene::grid_names::{is_other, is_seen};
+use crate::volume::file::GridInfo;
+use crate::volume::grid::GridClass;
 use crate::volume::grid::IndexBox;
-use crate::volume::vdb::{GridClass, GridInfo};
 
 /// A grid of numbers or colors that is worth rendering.
 pub(super) struct Candidate {

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use super::{FramesOnDisk, Pattern};
 use crate::error::{Error, Result};
 use crate::files::{name_of, path_of};
-use crate::scene::files::{has_extension, resolve};
+use crate::scene::files::{is_named_volume, resolve};
 
 /// A numbered set of volume files, and the frame that it opens at.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -26,10 +26,8 @@ impl NumberedSet {
     /// # Errors
     /// The folder cannot be read, or there is no file of the pattern.
     pub fn of_name(name: &str) -> Result<Option<Self>> {
-        if let Some(pattern) = Pattern::spelled(name) {
-            let files = FramesOnDisk::of(&pattern)?;
-            let [frame, _] = files.range();
-            return Ok(Some(Self { pattern, files, frame }));
+        if let Some(set) = Self::of_pattern(name)? {
+            return Ok(Some(set));
         }
         let path = &*path_of(name);
         // A file that is not there is reported by its own name.
@@ -40,6 +38,22 @@ impl NumberedSet {
         Ok(around.map(|(pattern, files, frame)| Self { pattern, files, frame }))
     }
 
+    /// The set of a pattern or of a folder; `None` for other names.
+    ///
+    /// # Errors
+    /// The errors of [`NumberedSet::of_name`] and [`NumberedSet::of_folder`].
+    pub fn of_pattern_or_folder(name: &str) -> Result<Option<Self>> {
+        let path = path_of(name);
+        if path.is_dir() { Self::of_folder(&path).map(Some) } else { Self::of_pattern(name) }
+    }
+
+    fn of_pattern(name: &str) -> Result<Option<Self>> {
+        let Some(pattern) = Pattern::spelled(name) else { return Ok(None) };
+        let files = FramesOnDisk::of(&pattern)?;
+        let [frame, _] = files.range();
+        Ok(Some(Self { pattern, files, frame }))
+    }
+
     /// The set of a folder: the one with the most files, the first by name of several.
     ///
     /// # Errors
@@ -47,7 +61,7 @@ impl NumberedSet {
     pub fn of_folder(folder: &Path) -> Result<Self> {
         let entries = std::fs::read_dir(folder).map_err(|e| Error::io(folder, e))?;
         let paths = entries.filter_map(|entry| entry.ok().map(|entry| entry.path()));
-        let mut volumes: Vec<PathBuf> = paths.filter(|path| has_extension(path, "vdb")).collect();
+        let mut volumes: Vec<PathBuf> = paths.filter(|path| is_named_volume(path)).collect();
         volumes.sort();
         let mut sets: BTreeMap<PathBuf, Self> = BTreeMap::new();
         for path in &volumes {
@@ -62,7 +76,7 @@ impl NumberedSet {
         let largest = sets.into_values().rev().max_by_key(|set| set.files.files().len());
         let mut set = largest.ok_or_else(|| {
             let reason = match volumes.as_slice() {
-                [] => "there are no volumes (.vdb) in this folder".to_owned(),
+                [] => "there are no volumes (.vdb, .nvdb) in this folder".to_owned(),
                 [first, ..] => format!(
                     "there is no numbered set of volumes in this folder; name a file in it, such \
                      as {}",

@@ -1,8 +1,8 @@
 //! The codecs that buffers of values are stored with.
 
-use super::blosc;
-use super::inflate::Inflate;
 use super::stream::{Result, Stream};
+use crate::volume::packing::blosc;
+use crate::volume::packing::inflate::Inflate;
 
 /// The compression flags of a file or a grid.
 #[derive(Clone, Copy, Debug)]

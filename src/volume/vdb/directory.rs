@@ -2,18 +2,18 @@
 
 use std::borrow::Cow;
 use std::fmt;
-use std::io::Read;
 use std::path::Path;
 use std::sync::Arc;
 
 use super::entry::{GridInfo, TreePlace};
-use super::file::{VdbFile, VdbGrid, VdbValues};
-use super::header::VdbHeader;
+use super::file::{VdbFile, VdbGrid};
+use super::header::{self, VdbHeader};
 use super::metadata::{self, Metadata};
 use super::stream::{Fault, Result as Step, Stream};
 use super::tree::{self, Tree};
 use crate::error::{Error, Progress, Result};
-use crate::volume::grid::{SparseGrid, Voxel};
+use crate::files;
+use crate::volume::grid::{SparseGrid, Voxel, VoxelValues};
 
 /// A file's list of grids, from which single ones can be loaded.
 pub struct Directory {
@@ -35,7 +35,7 @@ impl Directory {
     /// file, [`Error::Unsupported`] for another version, [`Error::Cancelled`].
     pub fn open(path: impl AsRef<Path>, progress: Progress) -> Result<Self> {
         let path = path.as_ref();
-        let bytes = read_file(path, progress)?;
+        let bytes = files::read_whole(path, header::check_start, progress)?;
         Self::parse(&path.display().to_string(), bytes, progress)
     }
 
@@ -71,13 +71,13 @@ impl Directory {
     /// # Errors
     /// [`Error::Invalid`] if the grid is damaged or there is none at `index`,
     /// [`Error::Unsupported`] if it would take absurd memory, [`Error::Cancelled`].
-    pub fn load(&self, index: usize, progress: Progress) -> Result<VdbValues> {
+    pub fn load(&self, index: usize, progress: Progress) -> Result<VoxelValues> {
         let Some(grid) = self.grids.get(index) else {
             let reason = format!("there is no grid {index}, the file has {}", self.grids.len());
             return Err(Error::invalid(&self.file, "", reason));
         };
         if let Some(reason) = &grid.unsupported {
-            return Ok(VdbValues::Unsupported(reason.clone()));
+            return Ok(VoxelValues::Unsupported(reason.clone()));
         }
         self.load_tree(grid, progress).map_err(|fault| fault.into_error(&self.file, &grid.name))
     }
@@ -88,7 +88,7 @@ impl Directory {
     /// Same errors as [`Directory::load`].
     pub fn load_all(self, progress: Progress) -> Result<VdbFile> {
         let count = self.grids.len() as f32;
-        let mut values: Vec<VdbValues> = Vec::new();
+        let mut values: Vec<VoxelValues> = Vec::new();
         for (index, grid) in self.grids.iter().enumerate() {
             let earlier = match &grid.tree {
                 TreePlace::Shared(name) if grid.unsupported.is_none() => {
@@ -112,7 +112,7 @@ impl Directory {
         self.grids.iter().position(|grid| grid.unique_name == unique_name)
     }
 
-    fn load_tree(&self, grid: &GridInfo, progress: Progress) -> Step<VdbValues> {
+    fn load_tree(&self, grid: &GridInfo, progress: Progress) -> Step<VoxelValues> {
         let place = match &grid.tree {
             TreePlace::Shared(name) => self.position(name).map(|parent| &self.grids[parent].tree),
             own => Some(own),
@@ -122,11 +122,11 @@ impl Directory {
                 let mut stream = Stream::new(&self.bytes[..bytes.end], bytes.start, "tree");
                 let tree = tree::scan(&mut stream, *layout, progress)?;
                 Ok(match layout.components {
-                    1 => VdbValues::Float(build(&tree, progress)?),
-                    _ => VdbValues::Vec3(build(&tree, progress)?),
+                    1 => VoxelValues::Float(build(&tree, progress)?),
+                    _ => VoxelValues::Vec3(build(&tree, progress)?),
                 })
             }
-            _ => Ok(VdbValues::Unsupported(
+            _ => Ok(VoxelValues::Unsupported(
                 "shares the voxels of a grid that is not in the file or cannot be loaded".into(),
             )),
         }
@@ -146,21 +146,4 @@ impl fmt::Debug for Directory {
 
 fn build<V: Voxel>(tree: &Tree, progress: Progress) -> Step<Arc<SparseGrid<V>>> {
     tree.build(progress).map(Arc::new)
-}
-
-/// Reads a file in pieces, so that cancelling is prompt on slow disks too.
-fn read_file(path: &Path, progress: Progress) -> Result<Vec<u8>> {
-    const PIECE: u64 = 8 << 20;
-    let failed = |error| Error::io(path, error);
-    let mut file = std::fs::File::open(path).map_err(failed)?;
-    let mut bytes = Vec::new();
-    loop {
-        if !progress(0.0) {
-            return Err(Error::Cancelled);
-        }
-        let read = file.by_ref().take(PIECE).read_to_end(&mut bytes).map_err(failed)?;
-        if read == 0 {
-            return Ok(bytes);
-        }
-    }
 }

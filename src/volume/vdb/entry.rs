@@ -1,49 +1,23 @@
 //! A grid's entry in the list of a file.
 
-use std::fmt;
 use std::ops::Range;
 
 use super::compression::Compression;
 use super::header::VdbHeader;
 use super::metadata::{self, MetaValue, Metadata};
 use super::stream::{Fault, Result, Stream};
-use super::transform::{self, Transform};
+use super::transform;
 use super::tree;
 use super::values::{Scalar, ValueLayout};
 use crate::error::Progress;
+use crate::volume::grid::{GridClass, Transform};
 
-/// Class of a grid: the quantity that its values stand for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum GridClass {
-    /// No class given.
-    Unknown,
-    /// Signed distances to a surface near it, and constants elsewhere; not a density.
-    LevelSet,
-    /// A density.
-    FogVolume,
-    /// A vector whose components are samples at the faces of the voxels.
-    Staggered,
-}
-
-impl GridClass {
-    fn of(metadata: &Metadata) -> Self {
-        match metadata.get("class") {
-            Some(MetaValue::Text(class)) if class == "level set" => Self::LevelSet,
-            Some(MetaValue::Text(class)) if class == "fog volume" => Self::FogVolume,
-            Some(MetaValue::Text(class)) if class == "staggered" => Self::Staggered,
-            _ => Self::Unknown,
-        }
-    }
-}
-
-impl fmt::Display for GridClass {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Unknown => "unknown",
-            Self::LevelSet => "level set",
-            Self::FogVolume => "fog volume",
-            Self::Staggered => "staggered",
-        })
+fn class_of(metadata: &Metadata) -> GridClass {
+    match metadata.get("class") {
+        Some(MetaValue::Text(class)) if class == "level set" => GridClass::LevelSet,
+        Some(MetaValue::Text(class)) if class == "fog volume" => GridClass::FogVolume,
+        Some(MetaValue::Text(class)) if class == "staggered" => GridClass::Staggered,
+        _ => GridClass::Unknown,
     }
 }
 
@@ -174,7 +148,7 @@ impl Descriptor {
         };
         Ok(GridInfo {
             name: self.name(),
-            class: GridClass::of(&metadata),
+            class: class_of(&metadata),
             is_half,
             transform,
             metadata,

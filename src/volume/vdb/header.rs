@@ -25,13 +25,7 @@ impl VdbHeader {
         stream.enter("header");
         check_magic(stream)?;
         let version = stream.u32()?;
-        if !VERSIONS.contains(&version) {
-            let (first, last) = (VERSIONS.start(), VERSIONS.end());
-            return Err(Fault::Unsupported(format!(
-                "version {version} of the file format, versions {first} to {last} are read; save \
-                 the file again with OpenVDB 2.0 or newer, in a format up to {last}"
-            )));
-        }
+        check_version(version).map_err(Fault::Unsupported)?;
         let _library_version = stream.take(8)?;
         let has_offsets = stream.u8()? != 0;
         let zipped = version < NODE_MASK_COMPRESSION && stream.u8()? != 0;
@@ -46,26 +40,49 @@ impl VdbHeader {
     }
 }
 
+/// Whether a file that starts with these bytes is an OpenVDB file.
+pub(in crate::volume) fn is_openvdb(start: &[u8]) -> bool {
+    start.starts_with(&MAGIC)
+}
+
+/// Whether a file that starts with these bytes may be an OpenVDB file of a version that is read;
+/// the reason if it is none.
+pub(in crate::volume) fn check_start(start: &[u8]) -> Result<(), String> {
+    check_first_bytes(start)?;
+    match start.get(MAGIC.len()..).and_then(|rest| rest.first_chunk()) {
+        Some(&version) => check_version(u32::from_le_bytes(version)),
+        None => Ok(()),
+    }
+}
+
+fn check_version(version: u32) -> Result<(), String> {
+    if VERSIONS.contains(&version) {
+        return Ok(());
+    }
+    let (first, last) = (VERSIONS.start(), VERSIONS.end());
+    Err(format!(
+        "version {version} of the file format, versions {first} to {last} are read; save the file \
+         again with OpenVDB 2.0 or newer, in a format up to {last}"
+    ))
+}
+
+fn check_first_bytes(start: &[u8]) -> Result<(), String> {
+    let reason = if start.is_empty() {
+        "the file is empty; export or copy it again"
+    } else if start.starts_with(b"version https://git-lfs") {
+        "this is a Git LFS pointer, not the volume itself; fetch the file with `git lfs pull`"
+    } else if start.len() >= MAGIC.len() && !start.starts_with(&MAGIC) {
+        "this is no volume, neither of OpenVDB nor of NanoVDB (its first bytes differ); choose a \
+         .vdb or .nvdb file"
+    } else {
+        return Ok(());
+    };
+    Err(reason.to_owned())
+}
+
 fn check_magic(stream: &mut Stream) -> Result<()> {
-    let mut ahead = stream.clone();
-    let start = ahead.take(stream.remaining().min(24))?;
-    if start.is_empty() {
-        return Err(stream.broken("the file is empty; export or copy it again"));
-    }
-    if start.starts_with(b"version https://git-lfs") {
-        return Err(stream.broken(
-            "this is a Git LFS pointer, not the volume itself; fetch the file with `git lfs pull`",
-        ));
-    }
-    if start.starts_with(b"NanoVDB") {
-        return Err(Fault::Unsupported(
-            "a NanoVDB file; convert it to OpenVDB, for example with `nanovdb_convert`".into(),
-        ));
-    }
-    if start.len() >= MAGIC.len() && !start.starts_with(&MAGIC) {
-        return Err(stream
-            .broken("this is not an OpenVDB file (its first bytes differ); choose a .vdb file"));
-    }
+    let start = stream.clone().take(stream.remaining().min(24))?;
+    check_first_bytes(start).map_err(|reason| stream.broken(reason))?;
     stream.take(MAGIC.len()).map(|_| ())
 }
 
@@ -102,8 +119,7 @@ mod tests {
         let message = |bytes: &[u8]| read(bytes).unwrap_err().into_error("f.vdb", "").to_string();
         assert!(message(b"").contains("empty"));
         assert!(message(b"version https://git-lfs.github.com/spec/v1\n").contains("git lfs pull"));
-        assert!(message(b"NanoVDB0").contains("NanoVDB"));
-        assert!(message(b"\x89PNG\r\n\x1a\n....").contains("not an OpenVDB file"));
+        assert!(message(b"\x89PNG\r\n\x1a\n....").contains("no volume"));
         assert!(message(b" BDV").contains("cut short"));
         assert!(message(&header(219)).contains("version 219"));
         assert!(message(&header(999)).contains("220 to 225"));

@@ -1,46 +1,10 @@
-//! The map from index space to the world.
+//! The maps from index space to the world, as files have them.
 
 use glam::{DAffine3, DMat4, DVec3};
 
 use super::stream::{Fault, Result, Stream};
 use crate::volume::Taper;
-
-/// Index space to world with column vectors, and the lengths of a voxel's edges in the world.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Transform {
-    /// World position = `index_to_world` x index position; voxel (i, j, k) is a sample at the
-    /// image of (i, j, k). Of a frustum the affine part alone, from spread space on.
-    pub index_to_world: DAffine3,
-    /// Edges of a voxel along i, j and k, in world units; of a frustum those in its near slice.
-    pub voxel_size: DVec3,
-    /// The part of a frustum transform that is not affine.
-    pub taper: Option<Taper>,
-}
-
-impl Transform {
-    /// Index space itself.
-    pub const IDENTITY: Self =
-        Self { index_to_world: DAffine3::IDENTITY, voxel_size: DVec3::ONE, taper: None };
-
-    fn new(index_to_world: DAffine3) -> Result<Self> {
-        let matrix = index_to_world.matrix3;
-        let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(DVec3::length);
-        let volume = matrix.determinant().abs();
-        if !(index_to_world.is_finite() && volume.is_finite() && volume > 0.0) {
-            return Err(Fault::Unsupported(
-                "a transform that flattens space or is not finite; give the grid a voxel size \
-                 above zero"
-                    .into(),
-            ));
-        }
-        Ok(Self { index_to_world, voxel_size: DVec3::new(x, y, z), taper: None })
-    }
-
-    /// World position of a position in index space.
-    pub fn point(&self, index: DVec3) -> DVec3 {
-        self.index_to_world.transform_point3(self.taper.map_or(index, |taper| taper.spread(index)))
-    }
-}
+use crate::volume::grid::Transform;
 
 /// From this version on the box of a frustum is stored as floating-point numbers.
 const FRUSTUM_OF_DOUBLES: u32 = 221;
@@ -52,8 +16,13 @@ pub(super) fn read(stream: &mut Stream, version: u32) -> Result<Transform> {
     let map = stream.text()?;
     match map.as_str() {
         "NonlinearFrustumMap" => frustum(stream, version),
-        map => Transform::new(affine(stream, map)?),
+        map => usable(affine(stream, map)?),
     }
+}
+
+/// The transform with this map.
+fn usable(index_to_world: DAffine3) -> Result<Transform> {
+    Transform::new(index_to_world).ok_or_else(|| Fault::Unsupported(Transform::UNUSABLE.into()))
 }
 
 /// Reads an affine map of that type.
@@ -95,7 +64,7 @@ fn frustum(stream: &mut Stream, version: u32) -> Result<Transform> {
         ));
     }
     let spread = DVec3::new(1.0 / size.x, 1.0 / size.x, depth / size.z);
-    let transform = Transform::new(world_from_unit * DAffine3::from_scale(spread))?;
+    let transform = usable(world_from_unit * DAffine3::from_scale(spread))?;
     let center = (0.5 * (min + max)).truncate();
     let taper = Taper { center, near: min.z, growth: (1.0 / taper - 1.0) / size.z };
     Ok(Transform { taper: Some(taper), ..transform })

@@ -19,7 +19,7 @@ const MIN_STREAM: usize = 128;
 
 /// Working memory, kept from one buffer to the next.
 #[derive(Default)]
-pub(super) struct Scratch {
+pub(in crate::volume) struct Scratch {
     shuffled: Vec<u8>,
     inflate: Inflate,
 }
@@ -38,23 +38,51 @@ struct BloscHeader {
 }
 
 /// Unpacks `source`, which must fill `target` exactly; the reason if it does not.
-pub(super) fn decompress(
+pub(in crate::volume) fn decompress(
     source: &[u8],
     target: &mut [u8],
     scratch: &mut Scratch,
 ) -> Result<(), String> {
-    let header = read_header(source, target.len())?;
-    let Some(inner) = header.inner else {
-        let plain = source.get(HEADER..HEADER + target.len()).ok_or_else(damaged)?;
-        target.copy_from_slice(plain);
-        return Ok(());
-    };
-    for (number, block) in target.chunks_mut(header.block).enumerate() {
+    let container = Container::open(source, target.len())?;
+    let mut blocks = target.chunks_mut(container.block_bytes()).enumerate();
+    blocks.try_for_each(|(number, block)| container.unpack_block(number, block, scratch))
+}
+
+/// A container whose blocks can be unpacked one by one.
+pub(in crate::volume) struct Container<'a> {
+    source: &'a [u8],
+    header: BloscHeader,
+}
+
+impl<'a> Container<'a> {
+    /// Reads the header of a container that holds `unpacked` bytes; the reason if it does not.
+    pub fn open(source: &'a [u8], unpacked: usize) -> Result<Self, String> {
+        Ok(Self { source, header: read_header(source, unpacked)? })
+    }
+
+    /// The length of all blocks but the last one, which may be shorter.
+    pub fn block_bytes(&self) -> usize {
+        self.header.block
+    }
+
+    /// Unpacks the block of that number, of which `block` must have the length.
+    pub fn unpack_block(
+        &self,
+        number: usize,
+        block: &mut [u8],
+        scratch: &mut Scratch,
+    ) -> Result<(), String> {
+        let Self { source, header } = self;
+        let Some(inner) = header.inner else {
+            let start = HEADER + number * header.block;
+            let plain = source.get(start..start + block.len()).ok_or_else(damaged)?;
+            block.copy_from_slice(plain);
+            return Ok(());
+        };
         let start = word(source, HEADER + 4 * number).ok_or_else(damaged)?;
         let packed = source.get(start..).ok_or_else(damaged)?;
-        decompress_block(packed, block, &header, inner, scratch)?;
+        decompress_block(packed, block, header, inner, scratch)
     }
-    Ok(())
 }
 
 fn read_header(source: &[u8], expected: usize) -> Result<BloscHeader, String> {
