@@ -684,3 +684,18 @@ fn replay_prints_the_path_that_was_rendered() {
         assert_eq!(beauty, values[y * 40 + x][..3], "pixel {pixel}: {text}");
     }
 }
+
+#[test]
+fn who_looks_past_the_volume_is_told() {
+    let place = Place::new();
+    let text = "[film]\nsize = [8, 6]\n[[volume]]\nshape = 'sphere'\n";
+    std::fs::write(place.path("ball.toml"), text).unwrap();
+    let told = |more: &[&str]| {
+        let arguments = [&["render", "ball.toml", "--spp", "2", "-o", "a.npy"], more].concat();
+        let (code, _, stderr) = place.run(&arguments);
+        assert_eq!(code, 0, "{stderr}");
+        stderr.contains("no path met any volume")
+    };
+    assert!(!told(&[]));
+    assert!(told(&["--set", "camera.target=[0, -9, 0]"]));
+}

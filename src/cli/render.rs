@@ -322,6 +322,9 @@ fn finish(
     }
     written?;
     report(outputs, render, &figures);
+    if !settings.volume.is_empty() && film.totals.met_no_volume() {
+        warn("no path met any volume; the camera may look past it");
+    }
     if let Some(failure) = &render.failure {
         let what = failed_path::in_words(failure, &arguments.scene.in_words(settings));
         return Err(Error::invalid("", "", what).into());

@@ -68,6 +68,11 @@ pub struct Totals {
 }
 
 impl Totals {
+    /// Whether there were paths, and none of them met any volume.
+    pub fn met_no_volume(&self) -> bool {
+        self.paths > 0 && self.tracking_steps == 0
+    }
+
     /// The sum of two counts, or the largest number that fits.
     #[must_use]
     pub fn plus(self, other: Self) -> Self {

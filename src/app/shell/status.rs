@@ -126,6 +126,12 @@ fn progress(ui: &mut Ui, stats: &RenderStats, live_render: &LiveRender, turns: u
         ui.label(RichText::new(text).color(color::WARNING))
             .on_hover_text("Samples that were not finite numbers and count as black.");
     }
+    let has_volumes =
+        live_render.built().is_some_and(|built| !built.scene.world.instances().is_empty());
+    if has_volumes && stats.tracking_steps == 0 && stats.samples_per_pixel >= 1.0 {
+        let help = "No path has met any volume. Frame it with F, or look at its placement.";
+        ui.label(RichText::new("no volume in sight").color(color::WARNING)).on_hover_text(help);
+    }
     let state = match (live_render.paused(), stats.finished) {
         (true, _) => "paused",
         (false, false) if live_render.held() => "paused while strategies are tried",
