@@ -86,9 +86,31 @@ fn run(bencher: Bencher, positions: &[Vec3A], sample: impl Fn(Vec3A) -> f32 + Sy
 mod sparse {
     use super::*;
 
-    fn grid() -> SparseGrid<f32> {
+    fn grid_of(values: &[f32]) -> SparseGrid<f32> {
         let size = UVec3::splat(EDGE as u32);
-        SparseGrid::from_dense(IVec3::ZERO, size, &field(), 0.0).expect("sizes agree")
+        SparseGrid::from_dense(IVec3::ZERO, size, values, 0.0).expect("sizes agree")
+    }
+
+    fn grid() -> SparseGrid<f32> {
+        grid_of(&field())
+    }
+
+    /// The field rounded to half floats, as most files have it.
+    fn halves() -> SparseGrid<f32> {
+        let rounded = |value: f32| half::f16::from_f32(value).to_f32();
+        grid_of(&field().into_iter().map(rounded).collect::<Vec<_>>())
+    }
+
+    #[divan::bench]
+    fn halves_random(bencher: Bencher) {
+        let grid = halves();
+        run(bencher, &random_positions(), |position| grid.sample(position));
+    }
+
+    #[divan::bench]
+    fn halves_coherent(bencher: Bencher) {
+        let grid = halves();
+        run(bencher, &coherent_positions(), |position| grid.sample(position));
     }
 
     #[divan::bench]

@@ -19,7 +19,7 @@ use folder::folder_of;
 pub(crate) use identity::Identity;
 pub(crate) use memory::reserve;
 pub use name::{name_of, path_of};
-pub(crate) use reading::{first_bytes, read_whole};
+pub(crate) use reading::{first_bytes, open_checked, read_whole};
 pub(crate) use target::Target;
 
 /// Writes a file as a whole or not at all: to a temporary name in the same folder, which takes the

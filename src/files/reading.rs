@@ -41,6 +41,22 @@ pub(crate) fn read_whole(
     Ok(bytes)
 }
 
+/// Opens a file, if `check` finds its first bytes good.
+///
+/// # Errors
+/// It cannot be read, is a folder, a pipe or a device; or the reason that `check` returns. Each
+/// names the file.
+pub(crate) fn open_checked(
+    path: &Path,
+    check: impl FnOnce(&[u8]) -> Result<(), String>,
+) -> Result<File> {
+    let (mut file, _) = open(path)?;
+    let mut start = Vec::new();
+    file.by_ref().take(START).read_to_end(&mut start).map_err(|error| Error::io(path, error))?;
+    check(&start).map_err(|reason| Error::invalid(path.display().to_string(), "", reason))?;
+    Ok(file)
+}
+
 /// The first bytes of a file, 64 at most.
 ///
 /// # Errors

@@ -80,14 +80,6 @@ impl Format {
         }
     }
 
-    /// Whether a file that starts with these bytes may be one of a version that is read.
-    fn check(start: &[u8]) -> Result<(), String> {
-        match Self::of(start)? {
-            Self::OpenVdb => vdb::check_start(start),
-            Self::NanoVdb => nvdb::check_start(start),
-        }
-    }
-
     /// Whether the file of that name is a volume file.
     ///
     /// # Errors
@@ -117,7 +109,10 @@ impl Directory {
     /// that is not read, [`Error::Cancelled`].
     pub fn open(path: impl AsRef<Path>, progress: Progress) -> Result<Self> {
         let path = path.as_ref();
-        let bytes = files::read_whole(path, Format::check, progress)?;
+        if !nvdb::is_nanovdb(&files::first_bytes(path)?) {
+            return vdb::Directory::open(path, progress).map(Self::of_openvdb);
+        }
+        let bytes = files::read_whole(path, nvdb::check_start, progress)?;
         Self::parse(&path.display().to_string(), bytes, progress)
     }
 

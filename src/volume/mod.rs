@@ -7,6 +7,7 @@ pub mod energy;
 pub mod field;
 pub mod file;
 pub mod grid;
+mod half;
 mod local_volume;
 pub mod majorant;
 pub mod medium;

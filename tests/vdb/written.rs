@@ -2,7 +2,7 @@
 
 use flambeau::error::NO_PROGRESS;
 use flambeau::volume::grid::{SparseGrid, Voxel, VoxelValues};
-use flambeau::volume::vdb::Directory;
+use flambeau::volume::vdb::{self, Directory, VdbFile};
 use glam::{DVec3, IVec3};
 
 use crate::writer::{
@@ -40,9 +40,38 @@ fn inactive_values_follow_from_their_code() {
     }
 }
 
+/// Files on a disk are read piece by piece, those without offsets through all of their trees.
+#[test]
+fn a_file_on_a_disk_holds_the_same_voxels() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("written.vdb");
+    for layout in layouts().step_by(5) {
+        std::fs::write(&path, write(&layout)).unwrap();
+        check_file(&vdb::read(&path, NO_PROGRESS).unwrap(), &layout);
+    }
+}
+
+#[test]
+fn a_file_that_changes_after_it_was_opened_is_not_mixed_up() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("written.vdb");
+    let bytes = write(&layouts().next().unwrap());
+    std::fs::write(&path, &bytes).unwrap();
+    let directory = Directory::open(&path, NO_PROGRESS).unwrap();
+    assert!(directory.load(0, NO_PROGRESS).is_ok());
+    std::fs::write(&path, &bytes[..bytes.len() - 1]).unwrap();
+    let refused = directory.load(0, NO_PROGRESS).unwrap_err().to_string();
+    assert!(refused.contains("written.vdb") && refused.contains("changed"), "{refused}");
+    std::fs::remove_file(&path).unwrap();
+    assert!(Directory::open(&path, NO_PROGRESS).is_err());
+}
+
 fn read_back(layout: &Layout) {
     let directory = Directory::parse("written.vdb", write(layout), NO_PROGRESS);
-    let file = directory.unwrap().load_all(NO_PROGRESS).unwrap();
+    check_file(&directory.unwrap().load_all(NO_PROGRESS).unwrap(), layout);
+}
+
+fn check_file(file: &VdbFile, layout: &Layout) {
     let grid = &file.grids[0];
     assert_eq!(grid.info.is_half, layout.half);
     assert_eq!(grid.info.transform.voxel_size, DVec3::splat(2.0));

@@ -1,56 +1,88 @@
-//! Assembles leaves and tiles into bricks and their index.
+//! Assembles blocks and tiles into nodes and their index.
 //!
-//! A brick takes its samples from the block that it covers and the seven blocks after it. Where
-//! these are all constants, the brick is determined by the eight constants and shared by all that
-//! have the same ones; so are nodes among constant regions. A tile of any size thus costs little
-//! more than its place in the table of nodes, its faces included.
+//! A brick takes its samples from the block that it covers and the seven blocks after it. Nodes
+//! whose region and whose seven followers are all constants are determined by these eight, and
+//! shared by all that have the same ones. A tile of any size thus costs little more than its place
+//! in the table of nodes, its faces included.
 
 use std::collections::{HashMap, HashSet};
 
 use glam::IVec3;
 use rayon::prelude::*;
 
-use super::bricks::{Brick, BrickRange, BrickSource, fill, union};
-use super::index::{BrickNumbers, Index, NODE_BRICKS, NODE_EDGE, node_of};
-use super::parts::{BlockOrigin, NodeRegion, Parts};
+use super::block_id::{BlockId, BlockKind};
+use super::blocks::PADDED_VALUES;
+use super::bricks::{Octet, Ranges};
+use super::index::{Index, NODE_BRICKS, NodeBlocks, node_of};
+use super::node::{Node, step};
+use super::parts::{Around, NodeRegion, Parts};
 use super::sparse_grid::SparseGrid;
 use super::voxel::Voxel;
 use crate::error::{Error, Progress, Result};
 
-/// Blocks along the edge of a node with the first of the next one.
-const REACH: usize = NODE_EDGE as usize + 1;
-/// Bricks filled between two checks for cancellation.
-const BRICKS_PER_STEP: usize = 256;
-
-/// A block or node and its seven followers, counted in binary, z lowest.
-type Octet = [BlockOrigin; 8];
-
-/// The octets that make the bricks and nodes, numbered in the order of their first appearance.
-struct Plan {
-    bricks: Vec<Octet>,
-    shared_bricks: HashMap<Octet, u32>,
-    nodes: Vec<BrickNumbers>,
-    shared_nodes: HashMap<Octet, u32>,
-}
+/// Nodes made before they are gathered, so that what they are made of takes little memory.
+const NODES_PER_STEP: usize = 64;
 
 /// Builds the grid.
 pub(super) fn assemble<V: Voxel>(parts: Parts<V>, progress: Progress) -> Result<SparseGrid<V>> {
-    let mut plan = Plan::new();
-    let positions = node_positions(&parts.regions);
-    let mut entries = Vec::with_capacity(positions.len());
-    for (done, &position) in positions.iter().enumerate() {
-        if done % 16 == 0 && !progress(0.2 + 0.3 * done as f32 / positions.len() as f32) {
-            return Err(Error::Cancelled);
-        }
-        let id = plan.node(position, &parts.regions);
-        if id != 0 {
-            entries.push((position, id));
-        }
+    let plan = Plan::new(&parts.regions);
+    let mut gathered = Gathered::new(&parts, plan.made.len());
+    let mut done = 0.0;
+    for around in plan.made.chunks(NODES_PER_STEP) {
+        let make = |around: &Around| match progress(done / plan.made.len() as f32) {
+            true => Ok(Node::new(around, &parts.blocks, parts.pad)),
+            false => Err(Error::Cancelled),
+        };
+        let nodes = around.par_iter().map(make).collect::<Result<Vec<_>>>()?;
+        nodes.into_iter().for_each(|node| gathered.add(node));
+        done += around.len() as f32;
     }
-    let (bricks, ranges) = fill_bricks(&plan.bricks, &parts, progress)?;
-    let node_ranges = plan.nodes.par_iter().map(|node| node_range(node, &ranges)).collect();
-    let index = Index::new(&entries, plan.nodes);
-    Ok(SparseGrid::from_parts(index, bricks, ranges, node_ranges, &parts.summary))
+    let number = |&(position, made): &(IVec3, usize)| (position, gathered.ids[made]);
+    let entries: Vec<_> = plan.places.iter().map(number).filter(|&(_, id)| id != 0).collect();
+    Ok(gathered.finish(&entries, parts))
+}
+
+/// The nodes to make, and which of them stands at each position.
+struct Plan<'a> {
+    made: Vec<Around<'a>>,
+    places: Vec<(IVec3, usize)>,
+}
+
+impl<'a> Plan<'a> {
+    fn new(regions: &'a HashMap<IVec3, NodeRegion>) -> Self {
+        const EMPTY: NodeRegion = NodeRegion::Constant(BlockId::BACKGROUND);
+        let mut plan = Self { made: Vec::new(), places: Vec::new() };
+        let mut shared: HashMap<Octet, usize> = HashMap::new();
+        for position in node_positions(regions) {
+            let region = |corner| regions.get(&(position + step(corner))).unwrap_or(&EMPTY);
+            let around: Around = std::array::from_fn(region);
+            let next = plan.made.len();
+            let made = match constants(&around) {
+                Some([BlockId::BACKGROUND, ref rest @ ..])
+                    if rest.iter().all(|&block| block == BlockId::BACKGROUND) =>
+                {
+                    continue;
+                }
+                Some(octet) => *shared.entry(octet).or_insert(next),
+                None => next,
+            };
+            if made == next {
+                plan.made.push(around);
+            }
+            plan.places.push((position, made));
+        }
+        plan
+    }
+}
+
+/// The constants of eight regions, if they are nothing else.
+fn constants(around: &Around) -> Option<Octet> {
+    let mut octet = [BlockId::BACKGROUND; 8];
+    for (block, region) in octet.iter_mut().zip(around) {
+        let NodeRegion::Constant(constant) = region else { return None };
+        *block = *constant;
+    }
+    Some(octet)
 }
 
 /// Every node that may hold more than background: those with data and the seven before each,
@@ -67,147 +99,78 @@ fn node_positions(regions: &HashMap<IVec3, NodeRegion>) -> Vec<IVec3> {
     positions
 }
 
-/// The step to follower `corner` of an octet.
-fn step(corner: usize) -> IVec3 {
-    IVec3::new((corner >> 2) as i32, (corner >> 1 & 1) as i32, (corner & 1) as i32)
+/// Nodes made so far.
+struct Gathered<V> {
+    nodes: Vec<NodeBlocks>,
+    node_ranges: Vec<(V, V)>,
+    ranges: Ranges<V>,
+    /// Values of the constant blocks that the nodes refer to.
+    constants: Vec<V>,
+    padded: Vec<[f32; PADDED_VALUES]>,
+    /// Number in `nodes` of each node in the order of making.
+    ids: Vec<u32>,
 }
 
-impl Plan {
-    fn new() -> Self {
-        let background = [BlockOrigin::BACKGROUND; 8];
+impl<V: Voxel> Gathered<V> {
+    /// Nothing but the node and the block that are background throughout.
+    fn new(parts: &Parts<V>, capacity: usize) -> Self {
+        let background = parts.blocks.constants[0];
+        let [halves, floats] = match parts.pad {
+            true => [0, 0],
+            false => [parts.blocks.halves.len(), parts.blocks.floats.len()],
+        };
+        let mut nodes = Vec::with_capacity(capacity + 1);
+        nodes.push([BlockId::BACKGROUND; NODE_BRICKS]);
         Self {
-            bricks: vec![background],
-            shared_bricks: HashMap::from([(background, 0)]),
-            nodes: vec![[0; NODE_BRICKS]],
-            shared_nodes: HashMap::from([(background, 0)]),
+            nodes,
+            node_ranges: vec![(background, background)],
+            ranges: Ranges::new(background, halves / V::COMPONENTS, floats / V::COMPONENTS),
+            constants: vec![background],
+            padded: Vec::new(),
+            ids: Vec::with_capacity(capacity),
         }
     }
 
-    /// The number of the node at `position`.
-    fn node(&mut self, position: IVec3, regions: &HashMap<IVec3, NodeRegion>) -> u32 {
-        const EMPTY: NodeRegion = NodeRegion::Constant(BlockOrigin::BACKGROUND);
-        let around: [&NodeRegion; 8] =
-            std::array::from_fn(|corner| regions.get(&(position + step(corner))).unwrap_or(&EMPTY));
-        let constants: Option<Vec<BlockOrigin>> = around
-            .iter()
-            .map(|region| match region {
-                NodeRegion::Constant(origin) => Some(*origin),
-                NodeRegion::Blocks(_) => None,
-            })
-            .collect();
-        let shared: Option<Octet> = constants.and_then(|octet| octet.try_into().ok());
-        if let Some(&id) = shared.and_then(|octet| self.shared_nodes.get(&octet)) {
-            return id;
+    /// Adds a node, whose constant blocks are numbered on its own.
+    fn add(&mut self, node: Node<V>) {
+        if node.is_background() {
+            self.ids.push(0);
+            return;
         }
-        let node = self.bricks_of(&around);
-        if shared.is_none() && node.iter().all(|&brick| brick == 0) {
-            return 0;
-        }
-        self.nodes.push(node);
-        let id = self.nodes.len() as u32 - 1;
-        if let Some(octet) = shared {
-            self.shared_nodes.insert(octet, id);
-        }
-        id
-    }
-
-    fn bricks_of(&mut self, around: &[&NodeRegion; 8]) -> BrickNumbers {
-        let blocks = blocks_of(around);
-        let at = |x: usize, y: usize, z: usize| blocks[(x * REACH + y) * REACH + z];
-        let mut node = [0; NODE_BRICKS];
-        let edge = NODE_EDGE as usize;
-        for (place, brick) in node.iter_mut().enumerate() {
-            let [x, y, z] = [place / edge / edge, place / edge % edge, place % edge];
-            let octet: Octet = std::array::from_fn(|corner| {
-                at(x + (corner >> 2), y + (corner >> 1 & 1), z + (corner & 1))
-            });
-            *brick = self.brick(octet);
-        }
-        node
-    }
-
-    fn brick(&mut self, octet: Octet) -> u32 {
-        if octet == [BlockOrigin::BACKGROUND; 8] {
-            return 0;
-        }
-        let shared = octet.iter().all(|origin| origin.leaf().is_none());
-        if shared && let Some(&id) = self.shared_bricks.get(&octet) {
-            return id;
-        }
-        self.bricks.push(octet);
-        let id = self.bricks.len() as u32 - 1;
-        if shared {
-            self.shared_bricks.insert(octet, id);
-        }
-        id
-    }
-}
-
-/// The blocks of a node and the first of the next ones, from the node's region and its followers.
-fn blocks_of(around: &[&NodeRegion; 8]) -> Vec<BlockOrigin> {
-    let edge = NODE_EDGE as usize;
-    let mut blocks = Vec::with_capacity(REACH * REACH * REACH);
-    for x in 0..REACH {
-        for y in 0..REACH {
-            for z in 0..REACH {
-                let corner = ((x / edge) << 2) | ((y / edge) << 1) | (z / edge);
-                blocks.push(match around[corner] {
-                    NodeRegion::Constant(origin) => *origin,
-                    NodeRegion::Blocks(blocks) => {
-                        blocks[((x % edge) * edge + y % edge) * edge + z % edge]
-                    }
-                });
+        let constants = self.constants.len() - 1;
+        let padded = self.padded.len() / V::COMPONENTS;
+        let mut blocks = *node.blocks;
+        for block in blocks.iter_mut().filter(|&&mut block| block != BlockId::BACKGROUND) {
+            match block.kind() {
+                kind @ BlockKind::Constant => {
+                    *block = BlockId::new(kind, block.number() + constants)
+                }
+                kind @ BlockKind::Padded => *block = BlockId::new(kind, block.number() + padded),
+                BlockKind::Half | BlockKind::Float => {}
             }
         }
-    }
-    blocks
-}
-
-type Filled<V> = (Vec<Brick<V>>, Vec<BrickRange<V>>);
-
-fn fill_bricks<V: Voxel>(
-    octets: &[Octet],
-    parts: &Parts<V>,
-    progress: Progress,
-) -> Result<Filled<V>> {
-    let background = parts.constants[0];
-    let mut bricks = vec![[V::ZERO; _]; octets.len()];
-    let mut ranges = vec![BrickRange::constant(background); octets.len()];
-    let done = std::sync::atomic::AtomicUsize::new(0);
-    let steps = octets.len().div_ceil(BRICKS_PER_STEP) as f32;
-    bricks
-        .par_chunks_mut(BRICKS_PER_STEP)
-        .zip(ranges.par_chunks_mut(BRICKS_PER_STEP))
-        .zip(octets.par_chunks(BRICKS_PER_STEP))
-        .try_for_each(|((bricks, ranges), octets)| {
-            let done = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-            if !progress(0.5 + 0.5 * done as f32 / steps) {
-                return Err(Error::Cancelled);
-            }
-            for ((brick, range), octet) in bricks.iter_mut().zip(ranges).zip(octets) {
-                fill(brick, &octet.map(|origin| source(origin, parts)));
-                *range = BrickRange::of(brick);
-            }
-            Ok(())
-        })?;
-    Ok((bricks, ranges))
-}
-
-fn source<V: Voxel>(origin: BlockOrigin, parts: &Parts<V>) -> BrickSource<'_, V> {
-    match origin.leaf() {
-        Some(leaf) => BrickSource::Leaf(&parts.leaves[leaf].values),
-        None => BrickSource::Constant(parts.constants[origin.constant()]),
-    }
-}
-
-fn node_range<V: Voxel>(node: &BrickNumbers, ranges: &[BrickRange<V>]) -> (V, V) {
-    let mut last = node[0];
-    let mut range = ranges[last as usize].whole();
-    for &brick in node {
-        if brick != last {
-            last = brick;
-            range = union(range, ranges[brick as usize].whole());
+        self.ids.push(self.nodes.len() as u32);
+        self.nodes.push(blocks);
+        self.node_ranges.push(node.range);
+        node.stored.into_iter().for_each(|(block, range)| self.ranges.set(block, range));
+        for (value, range) in node.constants {
+            self.constants.push(value);
+            self.ranges.push(BlockKind::Constant, range);
+        }
+        for (brick, range) in node.padded {
+            let component = |c| brick.map(|value| value.component(c));
+            self.padded.extend((0..V::COMPONENTS).map(component));
+            self.ranges.push(BlockKind::Padded, range);
         }
     }
-    range
+
+    fn finish(mut self, entries: &[(IVec3, u32)], parts: Parts<V>) -> SparseGrid<V> {
+        self.constants.shrink_to_fit();
+        self.ranges.shrink();
+        self.nodes.shrink_to_fit();
+        self.padded.shrink_to_fit();
+        let blocks = parts.blocks.assembled(self.constants, self.padded);
+        let index = Index::new(entries, self.nodes);
+        SparseGrid::from_parts(index, blocks, self.ranges, self.node_ranges, &parts.summary)
+    }
 }

@@ -1,7 +1,8 @@
-//! Index of bricks: the brick that holds a position, in memory that grows with the stored data.
+//! Index of blocks: the block that holds a voxel, in memory that grows with the stored data.
 
 use glam::{IVec3, UVec3};
 
+use super::block_id::BlockId;
 use super::index_box::IndexBox;
 
 /// log2 of the bricks along the edge of a node; below, of a brick's edge and of a node's in voxels.
@@ -13,8 +14,8 @@ pub(super) const NODE_EDGE: i32 = 1 << NODE_BITS;
 /// Bricks in a node.
 pub(super) const NODE_BRICKS: usize = 1 << (3 * NODE_BITS);
 
-/// The numbers of the 16x16x16 bricks of a node, z fastest.
-pub(super) type BrickNumbers = [u32; NODE_BRICKS];
+/// The blocks of the 16x16x16 bricks of a node, z fastest.
+pub(super) type NodeBlocks = [BlockId; NODE_BRICKS];
 
 /// A dense table of nodes may always have this many entries, and ...
 const DENSE_ENTRIES: u64 = 1 << 16;
@@ -43,11 +44,10 @@ pub(super) fn brick_in_node(voxel: IVec3) -> usize {
 }
 
 /// Two-level index: nodes of 16x16x16 bricks, and a table of nodes over the data's box or, where
-/// the data is scattered too far apart for that, a sorted list of them. Number 0 is, for nodes and
-/// bricks, the background.
+/// the data is scattered too far apart for that, a sorted list of them. Node 0 is background.
 pub(super) struct Index {
     table: IndexTable,
-    pub nodes: Vec<BrickNumbers>,
+    pub nodes: Vec<NodeBlocks>,
 }
 
 enum IndexTable {
@@ -66,7 +66,7 @@ enum IndexTable {
 
 impl Index {
     /// An index over `entries`, positions and numbers of nodes, sorted by [x, y, z], none twice.
-    pub fn new(entries: &[(IVec3, u32)], nodes: Vec<BrickNumbers>) -> Self {
+    pub fn new(entries: &[(IVec3, u32)], nodes: Vec<NodeBlocks>) -> Self {
         let bounds = entries
             .iter()
             .map(|&(position, _)| IndexBox::of_voxel(position))
@@ -81,22 +81,23 @@ impl Index {
         Self { table, nodes }
     }
 
-    /// The number of the brick that holds `voxel`.
+    /// The block that holds `voxel`.
     #[inline(always)]
-    pub fn brick(&self, voxel: IVec3) -> usize {
+    pub fn block(&self, voxel: IVec3) -> BlockId {
         let node = match &self.table {
             IndexTable::Dense { origin, size, strides, ids } => {
                 // Wrapping, so that one comparison finds what lies before and beyond the table.
                 let local = voxel.wrapping_sub(*origin).as_uvec3();
                 if local.x >= size.x || local.y >= size.y || local.z >= size.z {
-                    return 0;
+                    return BlockId::BACKGROUND;
                 }
                 let [x, y, z] = local.to_array().map(|c| (c >> NODE_VOXEL_BITS) as usize);
                 ids.get(x * strides[0] + y * strides[1] + z).copied().unwrap_or(0)
             }
             IndexTable::Sparse { positions, ids } => find(positions, ids, node_of(voxel)),
         };
-        self.nodes.get(node as usize).map_or(0, |node| node[brick_in_node(voxel)] as usize)
+        let node = self.nodes.get(node as usize);
+        node.map_or(BlockId::BACKGROUND, |node| node[brick_in_node(voxel)])
     }
 
     /// Calls `visit` with the position and number of the nodes in `bounds` (node positions) that
@@ -147,19 +148,12 @@ impl Index {
         }
     }
 
-    /// Number of uses of each of `bricks` bricks; that of the background is not counted.
-    pub fn brick_uses(&self, bricks: usize) -> Vec<u64> {
+    /// Number of places that each node stands at; that of the background is not counted.
+    pub fn node_uses(&self) -> Vec<u64> {
         let (IndexTable::Dense { ids, .. } | IndexTable::Sparse { ids, .. }) = &self.table;
-        let mut node_uses = vec![0_u64; self.nodes.len()];
-        for &id in ids {
-            node_uses[id as usize] += 1;
-        }
-        let mut uses = vec![0; bricks];
-        for (node, node_uses) in self.nodes.iter().zip(node_uses).skip(1) {
-            node.iter().for_each(|&brick| uses[brick as usize] += node_uses);
-        }
-        if let Some(background) = uses.first_mut() {
-            *background = 0;
+        let mut uses = vec![0; self.nodes.len()];
+        for &id in ids.iter().filter(|&&id| id != 0) {
+            uses[id as usize] += 1;
         }
         uses
     }

@@ -55,8 +55,8 @@ impl<V: Voxel> SparseGrid<V> {
             let first = brick * BRICK_EDGE;
             let low = (min - first).max(IVec3::ZERO);
             let high = (max - first).min(IVec3::splat(BRICK_EDGE - 1));
-            let number = node[super::index::brick_in_node(first)];
-            let more = self.ranges[number as usize].within(low, high);
+            let block = node[super::index::brick_in_node(first)];
+            let more = self.ranges.of(block).within(low, high);
             range = Some(range.map_or(more, |range| union(range, more)));
         }
         range.unwrap_or(self.total_range)

@@ -40,6 +40,9 @@ pub trait Voxel:
     /// The components in double precision (the last ones 0 for a scalar).
     fn to_f64(self) -> [f64; 3];
 
+    /// The component of this number, below [`Voxel::COMPONENTS`].
+    fn component(self, number: usize) -> f32;
+
     /// The value with these components; a scalar takes the first.
     fn from_components(components: [f32; 3]) -> Self;
 }
@@ -73,6 +76,11 @@ impl Voxel for f32 {
 
     fn to_f64(self) -> [f64; 3] {
         [self.into(), 0.0, 0.0]
+    }
+
+    #[inline(always)]
+    fn component(self, _number: usize) -> f32 {
+        self
     }
 
     #[inline(always)]
@@ -110,6 +118,11 @@ impl Voxel for Vec3A {
 
     fn to_f64(self) -> [f64; 3] {
         self.to_array().map(f64::from)
+    }
+
+    #[inline(always)]
+    fn component(self, number: usize) -> f32 {
+        self[number]
     }
 
     #[inline(always)]

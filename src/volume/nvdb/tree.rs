@@ -2,15 +2,13 @@
 //! 8x8x8 voxels. A scan follows the offsets from the root down and adds all tiles; then the leaves
 //! are decoded on all threads.
 
-use std::sync::atomic::{AtomicUsize, Ordering};
-
 use glam::IVec3;
 use rayon::prelude::*;
 
 use super::bytes::{Bytes, broken, origin_of_key};
 use super::layout::{GRID_HEADER, LOWER_PLACES, NODE_MASKS, NodeLayout, UPPER_PLACES, ValueLayout};
 use super::leaf;
-use crate::error::{Error, Progress, Result, report};
+use crate::error::{Progress, Result, report};
 use crate::volume::grid::{GridBuilder, Leaf, SparseGrid, Voxel};
 
 /// The offset of the root, counted from the tree.
@@ -18,8 +16,10 @@ const ROOT_OFFSET: usize = GRID_HEADER + 24;
 /// The root's number of entries.
 const ENTRY_COUNT: usize = 24;
 const ROOT_BITS: u32 = 12;
-/// Leaves decoded by one thread between two checks whether to stop.
-const DECODE_STEP: usize = 128;
+/// Leaves decoded by one thread at a time.
+const DECODE_STEP: usize = 64;
+/// Leaves decoded before they are packed, so that few are in memory unpacked.
+const LEAVES_PER_STEP: usize = 4096;
 
 /// One of the two levels of nodes with children.
 #[derive(Clone, Copy)]
@@ -85,7 +85,12 @@ pub(super) fn load<V: Voxel>(
     let mut scan = Scan { grid, layout, nodes, background, builder, leaves, found: 0, progress };
     scan.root(root)?;
     let Scan { mut builder, leaves, .. } = scan;
-    builder.add_leaves(decode(&leaves, layout, &nodes, progress)?);
+    for (step, places) in leaves.chunks(LEAVES_PER_STEP).enumerate() {
+        let done = (step * LEAVES_PER_STEP) as f32 / leaves.len() as f32;
+        report(progress, 0.1 + 0.5 * done)?;
+        let decode = |place: &Place| decode_leaf(place, layout, &nodes);
+        builder.add_leaves(places.par_iter().with_min_len(DECODE_STEP).map(decode).collect());
+    }
     builder.finish(&|fraction| progress(0.6 + 0.4 * fraction))
 }
 
@@ -161,27 +166,6 @@ impl<'a, V: Voxel> Scan<'a, '_, V> {
             false => Ok(()),
         }
     }
-}
-
-fn decode<V: Voxel>(
-    places: &[Place],
-    layout: ValueLayout,
-    nodes: &NodeLayout,
-    progress: Progress,
-) -> Result<Vec<Leaf<V>>> {
-    let done = AtomicUsize::new(0);
-    let steps = places.len().div_ceil(DECODE_STEP) as f32;
-    let leaves: Vec<Vec<Leaf<V>>> = places
-        .par_chunks(DECODE_STEP)
-        .map(|places| {
-            let done = done.fetch_add(1, Ordering::Relaxed) as f32;
-            if !progress(0.1 + 0.5 * done / steps) {
-                return Err(Error::Cancelled);
-            }
-            Ok(places.iter().map(|place| decode_leaf(place, layout, nodes)).collect())
-        })
-        .collect::<Result<_>>()?;
-    Ok(leaves.into_iter().flatten().collect())
 }
 
 fn decode_leaf<V: Voxel>(place: &Place, layout: ValueLayout, nodes: &NodeLayout) -> Leaf<V> {

@@ -8,17 +8,18 @@ use std::sync::Arc;
 use super::entry::{GridInfo, TreePlace};
 use super::file::{VdbFile, VdbGrid};
 use super::header::{self, VdbHeader};
+use super::load::load;
 use super::metadata::{self, Metadata};
-use super::stream::{Fault, Result as Step, Stream};
-use super::tree::{self, Tree};
-use crate::error::{Error, Progress, Result};
+use super::reader::{Reader, Source};
+use super::stream::{Fault, Result as Step};
+use crate::error::{Error, Progress, Result, report};
 use crate::files;
-use crate::volume::grid::{SparseGrid, Voxel, VoxelValues};
+use crate::volume::grid::VoxelValues;
 
 /// A file's list of grids, from which single ones can be loaded.
 pub struct Directory {
     file: String,
-    bytes: Cow<'static, [u8]>,
+    source: Source,
     /// Version of the file format.
     pub version: u32,
     /// The file's own named values.
@@ -35,8 +36,9 @@ impl Directory {
     /// file, [`Error::Unsupported`] for another version, [`Error::Cancelled`].
     pub fn open(path: impl AsRef<Path>, progress: Progress) -> Result<Self> {
         let path = path.as_ref();
-        let bytes = files::read_whole(path, header::check_start, progress)?;
-        Self::parse(&path.display().to_string(), bytes, progress)
+        let source = Source::of_file(files::open_checked(path, header::check_start)?)
+            .map_err(|error| Error::io(path, error))?;
+        Self::list(path.display().to_string(), source, progress)
     }
 
     /// Reads the list of grids from bytes in memory; `file` names them in messages.
@@ -48,29 +50,33 @@ impl Directory {
         bytes: impl Into<Cow<'static, [u8]>>,
         progress: Progress,
     ) -> Result<Self> {
-        let bytes = bytes.into();
-        let mut stream = Stream::new(&bytes, 0, "header");
-        let in_file = |fault: Fault| fault.into_error(file, "");
-        let header = VdbHeader::read(&mut stream).map_err(in_file)?;
-        let metadata = metadata::read(&mut stream).map_err(in_file)?;
-        stream.enter("list of grids");
+        Self::list(file.into(), Source::Memory(bytes.into()), progress)
+    }
+
+    fn list(file: String, source: Source, progress: Progress) -> Result<Self> {
+        report(progress, 0.0)?;
+        let mut reader = Reader::of_list(&source);
+        let in_file = |fault: Fault| fault.into_error(&file, "");
+        let header = reader.step("header", VdbHeader::read).map_err(in_file)?;
+        let metadata = reader.step("metadata", metadata::read).map_err(in_file)?;
         // Three texts and three offsets are the least that a grid takes.
-        let count = stream.count(36).map_err(in_file)?;
+        let count = reader.step("list of grids", |stream| stream.count(36)).map_err(in_file)?;
         let mut grids = Vec::new();
         for _ in 0..count {
             let mut name = String::new();
-            let grid = GridInfo::read(&mut stream, &header, &mut name, progress);
-            grids.push(grid.map_err(|fault| fault.into_error(file, &name))?);
+            let grid = GridInfo::read(&mut reader, &header, &mut name, progress);
+            grids.push(grid.map_err(|fault| fault.into_error(&file, &name))?);
         }
-        Ok(Self { file: file.into(), version: header.version, metadata, grids, bytes })
+        Ok(Self { file, version: header.version, metadata, grids, source })
     }
 
     /// Loads the voxels of the grid at `index` of the list, or the reason why they cannot be
     /// loaded.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if the grid is damaged or there is none at `index`,
-    /// [`Error::Unsupported`] if it would take absurd memory, [`Error::Cancelled`].
+    /// [`Error::Invalid`] if the grid is damaged, there is none at `index` or the file has changed
+    /// since it was opened, [`Error::Io`] if it can no longer be read, [`Error::Unsupported`] if it
+    /// would take absurd memory, [`Error::Cancelled`].
     pub fn load(&self, index: usize, progress: Progress) -> Result<VoxelValues> {
         let Some(grid) = self.grids.get(index) else {
             let reason = format!("there is no grid {index}, the file has {}", self.grids.len());
@@ -79,7 +85,12 @@ impl Directory {
         if let Some(reason) = &grid.unsupported {
             return Ok(VoxelValues::Unsupported(reason.clone()));
         }
-        self.load_tree(grid, progress).map_err(|fault| fault.into_error(&self.file, &grid.name))
+        let values = self.load_tree(grid, progress);
+        if self.source.has_changed() {
+            let reason = "the file was changed while it was read; load it again";
+            return Err(Error::invalid(&self.file, "", reason));
+        }
+        values.map_err(|fault| fault.into_error(&self.file, &grid.name))
     }
 
     /// Loads every grid; those that share a tree share its voxels.
@@ -119,11 +130,10 @@ impl Directory {
         };
         match place {
             Some(TreePlace::Own { bytes, layout }) => {
-                let mut stream = Stream::new(&self.bytes[..bytes.end], bytes.start, "tree");
-                let tree = tree::scan(&mut stream, *layout, progress)?;
+                let mut reader = Reader::of_tree(&self.source, bytes.clone());
                 Ok(match layout.components {
-                    1 => VoxelValues::Float(build(&tree, progress)?),
-                    _ => VoxelValues::Vec3(build(&tree, progress)?),
+                    1 => VoxelValues::Float(Arc::new(load(&mut reader, *layout, progress)?)),
+                    _ => VoxelValues::Vec3(Arc::new(load(&mut reader, *layout, progress)?)),
                 })
             }
             _ => Ok(VoxelValues::Unsupported(
@@ -142,8 +152,4 @@ impl fmt::Debug for Directory {
             .field("grids", &self.grids)
             .finish_non_exhaustive()
     }
-}
-
-fn build<V: Voxel>(tree: &Tree, progress: Progress) -> Step<Arc<SparseGrid<V>>> {
-    tree.build(progress).map(Arc::new)
 }

@@ -5,9 +5,10 @@ use std::ops::Range;
 use super::compression::Compression;
 use super::header::VdbHeader;
 use super::metadata::{self, MetaValue, Metadata};
+use super::reader::Reader;
 use super::stream::{Fault, Result, Stream};
 use super::transform;
-use super::tree;
+use super::tree::{self, PassOver};
 use super::values::{Scalar, ValueLayout};
 use crate::error::Progress;
 use crate::volume::grid::{GridClass, Transform};
@@ -56,27 +57,27 @@ pub(super) enum TreePlace {
 }
 
 impl GridInfo {
-    /// Reads an entry and what comes before its tree, and leaves the stream at the next entry;
+    /// Reads an entry and what comes before its tree, and leaves the reader at the next entry;
     /// `name` is set as soon as it is known.
     pub(super) fn read(
-        stream: &mut Stream,
+        reader: &mut Reader,
         header: &VdbHeader,
         name: &mut String,
         progress: Progress,
     ) -> Result<Self> {
-        let descriptor = Descriptor::read(stream)?;
+        let descriptor = reader.step("list of grids", Descriptor::read)?;
         *name = descriptor.name();
         if header.has_offsets {
-            let mut window = stream.window(descriptor.start, descriptor.end)?;
-            let grid = descriptor.read_grid(&mut window, header)?;
-            stream.skip(&window);
+            let mut window = reader.window(descriptor.start, descriptor.end)?;
+            let grid = window.step("grid", |stream| descriptor.read_grid(stream, header))?;
+            reader.skip(&window);
             return Ok(grid);
         }
-        let grid = descriptor.read_grid(stream, header)?;
+        let grid = reader.step("grid", |stream| descriptor.read_grid(stream, header))?;
         match &grid.tree {
             TreePlace::Shared(_) => {}
             TreePlace::Own { layout, .. } => {
-                tree::scan(stream, *layout, progress)?;
+                tree::walk(reader, *layout, &mut PassOver, progress)?;
             }
             TreePlace::Foreign => {
                 return Err(Fault::Unsupported(format!(
@@ -120,7 +121,7 @@ impl Descriptor {
     }
 
     /// Reads what comes before the tree, if the grid has one of its own.
-    fn read_grid(self, stream: &mut Stream, header: &VdbHeader) -> Result<GridInfo> {
+    fn read_grid(&self, stream: &mut Stream, header: &VdbHeader) -> Result<GridInfo> {
         let compression = match header.has_node_masks() {
             true => Compression::read(stream)?,
             false => header.compression,
@@ -153,8 +154,8 @@ impl Descriptor {
             transform,
             metadata,
             unsupported: refused.or_else(|| unsupported_type(&self.type_name)),
-            type_name: self.type_name,
-            unique_name: self.unique_name,
+            type_name: self.type_name.clone(),
+            unique_name: self.unique_name.clone(),
             tree,
         })
     }

@@ -11,6 +11,11 @@ pub(super) enum Fault {
     Unsupported(String),
     /// The caller cancelled.
     Cancelled,
+    /// The file can no longer be read.
+    Io(std::io::Error),
+    /// Bytes up to this offset are needed, and not in memory; [`Reader`](super::reader::Reader)
+    /// reads them and tries again.
+    Beyond(usize),
 }
 
 pub(super) type Result<T, E = Fault> = std::result::Result<T, E>;
@@ -27,6 +32,10 @@ impl Fault {
             }
             Self::Unsupported(reason) => Error::unsupported(file, of_grid, reason),
             Self::Cancelled => Error::Cancelled,
+            Self::Io(error) => Error::io(file, error),
+            Self::Beyond(offset) => {
+                Error::invalid(file, of_grid, format!("at byte {offset}: the file is cut short"))
+            }
         }
     }
 }
@@ -45,14 +54,32 @@ impl From<Error> for Fault {
 /// Reads values one after another, little-endian; every failure names the section and the offset.
 #[derive(Clone)]
 pub(super) struct Stream<'a> {
+    /// The bytes of the file from `start` on that are in memory.
     bytes: &'a [u8],
+    start: usize,
+    /// Offsets in the file: of the next byte, and where the last one that may be read ends.
     position: usize,
+    end: usize,
     section: &'static str,
 }
 
 impl<'a> Stream<'a> {
+    /// A stream over the bytes up to `end` of a file, of which only `bytes`, from `start` on, are
+    /// in memory.
+    pub fn part(
+        bytes: &'a [u8],
+        start: usize,
+        position: usize,
+        end: usize,
+        section: &'static str,
+    ) -> Self {
+        Self { bytes, start, position: position.min(end), end, section }
+    }
+
+    /// A stream over bytes that are all in memory.
+    #[cfg(test)]
     pub fn new(bytes: &'a [u8], position: usize, section: &'static str) -> Self {
-        Self { bytes, position: position.min(bytes.len()), section }
+        Self::part(bytes, 0, position, bytes.len(), section)
     }
 
     /// Names the section that is read from here on.
@@ -64,33 +91,13 @@ impl<'a> Stream<'a> {
         self.position
     }
 
-    /// A stream over the bytes from `start` to `end` of the file, which must lie ahead.
-    pub fn window(&self, start: i64, end: i64) -> Result<Self> {
-        let bounds = usize::try_from(start).ok().zip(usize::try_from(end).ok());
-        match bounds.and_then(|(start, end)| Some((start, self.bytes.get(..end)?))) {
-            Some((start, bytes)) if self.position <= start && start <= bytes.len() => {
-                Ok(Self { bytes, position: start, section: self.section })
-            }
-            _ => Err(self.broken(format!(
-                "the grid should lie between bytes {start} and {end} of a file of {} bytes; the \
-                 file is cut short or damaged, export or copy it again",
-                self.bytes.len()
-            ))),
-        }
-    }
-
-    /// Goes on behind the last byte of `window`.
-    pub fn skip(&mut self, window: &Stream) {
-        self.position = self.position.max(window.bytes.len().min(self.bytes.len()));
-    }
-
     /// The bytes that are left.
     pub fn rest(&self) -> std::ops::Range<usize> {
-        self.position..self.bytes.len()
+        self.position..self.end
     }
 
     pub fn remaining(&self) -> usize {
-        self.bytes.len() - self.position
+        self.end - self.position
     }
 
     /// A fault at this place.
@@ -100,14 +107,16 @@ impl<'a> Stream<'a> {
 
     /// The next `count` bytes, without a copy.
     pub fn take(&mut self, count: usize) -> Result<&'a [u8]> {
-        let rest = &self.bytes[self.position..];
-        let Some(taken) = rest.get(..count) else {
+        if count > self.remaining() {
             return Err(self.broken(format!(
                 "{count} bytes expected where {} are left; the file is cut short or damaged, \
                  export or copy it again",
-                rest.len()
+                self.remaining()
             )));
-        };
+        }
+        let first = self.position.checked_sub(self.start);
+        let taken = first.and_then(|first| self.bytes.get(first..first + count));
+        let Some(taken) = taken else { return Err(Fault::Beyond(self.position + count)) };
         self.position += count;
         Ok(taken)
     }

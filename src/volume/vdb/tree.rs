@@ -1,23 +1,19 @@
 //! The tree of a grid: a root, two levels of internal nodes with 32 and 16 places a side, and
 //! leaves of 8x8x8 voxels. First comes its topology with all tiles, then the leaves' values.
 //!
-//! A scan finds every node without unpacking a value; it also steps over grids that are not
-//! loaded. Then the buffers are unpacked on all threads.
-
-use std::sync::atomic::{AtomicUsize, Ordering};
+//! A walk finds every node without unpacking a value, and hands it to a [`Visitor`]; so it also
+//! steps over grids that are not loaded.
 
 use glam::IVec3;
-use rayon::prelude::*;
 
-use super::compression::Codec;
+use super::reader::Reader;
 use super::stream::{Fault, Result, Stream};
 use super::values::{Mask, PackedValues, ValueLayout};
 use crate::error::Progress;
-use crate::volume::grid::{GridBuilder, Leaf, SparseGrid, Voxel};
 
 /// log2 of the places along the edge of a node, and of the voxels along one of them.
 #[derive(Clone, Copy)]
-struct TreeLevel {
+pub(super) struct TreeLevel {
     places: u32,
     voxels: u32,
 }
@@ -26,19 +22,24 @@ struct TreeLevel {
 const UPPER: TreeLevel = TreeLevel { places: 5, voxels: 7 };
 /// The children of the upper nodes, 128 voxels a side.
 const LOWER: TreeLevel = TreeLevel { places: 4, voxels: 3 };
-const ROOT_BITS: u32 = 12;
-const LEAF_VOXELS: usize = 512;
-/// Nodes scanned, or leaves decoded by one thread, between two checks whether to stop.
-const SCAN_STEP: usize = 1024;
-const DECODE_STEP: usize = 128;
+/// log2 of the voxels along the edge of a tile at the root.
+pub(super) const ROOT_BITS: u32 = 12;
+pub(super) const LEAF_VOXELS: usize = 512;
+/// Leaves visited at a time.
+const LEAVES_PER_STEP: usize = 4096;
 
 impl TreeLevel {
-    fn count(self) -> usize {
+    pub fn count(self) -> usize {
         1 << (3 * self.places)
     }
 
+    /// Edge of the voxels at a place.
+    pub fn edge(self) -> u32 {
+        1 << self.voxels
+    }
+
     /// The first voxel of a place.
-    fn origin(self, node: IVec3, place: usize) -> IVec3 {
+    pub fn origin(self, node: IVec3, place: usize) -> IVec3 {
         let edge = (1 << self.places) - 1;
         let place = [place >> (2 * self.places), place >> self.places, place];
         node + (IVec3::from_array(place.map(|c| (c & edge) as i32)) << self.voxels as i32)
@@ -46,223 +47,227 @@ impl TreeLevel {
 }
 
 /// A tile at the root.
-struct RootTile<'a> {
-    origin: IVec3,
-    value: &'a [u8],
-    active: bool,
+pub(super) struct RootTile<'a> {
+    pub origin: IVec3,
+    pub value: &'a [u8],
+    pub active: bool,
 }
 
 /// An internal node with the tiles among its places.
-struct InternalNode<'a> {
-    level: TreeLevel,
-    origin: IVec3,
-    children: Mask<'a>,
-    active: Mask<'a>,
-    values: PackedValues<'a>,
+pub(super) struct InternalNode<'a> {
+    pub level: TreeLevel,
+    pub origin: IVec3,
+    pub children: Mask<'a>,
+    pub active: Mask<'a>,
+    pub values: PackedValues<'a>,
 }
 
-struct LeafNode<'a> {
-    origin: IVec3,
-    active: Mask<'a>,
-    values: PackedValues<'a>,
+/// A leaf.
+pub(super) struct LeafNode<'a> {
+    pub origin: IVec3,
+    pub active: Mask<'a>,
+    pub values: PackedValues<'a>,
 }
 
-/// A tree whose nodes have been found but not unpacked.
-pub(super) struct Tree<'a> {
-    layout: ValueLayout,
-    background: &'a [u8],
-    root_tiles: Vec<RootTile<'a>>,
-    internal: Vec<InternalNode<'a>>,
-    leaves: Vec<LeafNode<'a>>,
-}
+/// Receives the nodes of a tree in the order of the file; by default it passes them over.
+pub(super) trait Visitor {
+    /// The value outside of all nodes.
+    fn background(&mut self, _value: &[u8]) {}
 
-/// Finds all nodes of the tree at the stream's position, and leaves the stream behind it.
-pub(super) fn scan<'a>(
-    stream: &mut Stream<'a>,
-    layout: ValueLayout,
-    progress: Progress,
-) -> Result<Tree<'a>> {
-    stream.enter("tree");
-    if stream.u32()? != 1 {
-        return Err(Fault::Unsupported(
-            "a tree with several buffers; save the file again with OpenVDB 2.0 or newer".into(),
-        ));
+    fn root_tile(&mut self, _tile: &RootTile) -> Result<()> {
+        Ok(())
     }
-    let background = stream.take(layout.value_bytes())?;
-    let tree = Tree { layout, background, root_tiles: vec![], internal: vec![], leaves: vec![] };
-    let mut scan = Scan { stream, tree, leaf_origins: vec![], steps: 0, progress };
-    scan.root()?;
-    scan.leaves()?;
-    Ok(scan.tree)
+
+    fn internal(&mut self, _node: &InternalNode) -> Result<()> {
+        Ok(())
+    }
+
+    fn leaves(&mut self, _leaves: &[LeafNode]) -> Result<()> {
+        Ok(())
+    }
 }
 
-struct Scan<'a, 's, 'p> {
-    stream: &'s mut Stream<'a>,
-    tree: Tree<'a>,
+/// Passes every node over.
+pub(super) struct PassOver;
+
+impl Visitor for PassOver {}
+
+/// Visits all nodes of the tree at the reader's position, and leaves the reader behind it.
+pub(super) fn walk(
+    reader: &mut Reader,
+    layout: ValueLayout,
+    visitor: &mut dyn Visitor,
+    progress: Progress,
+) -> Result<()> {
+    let start = reader.position();
+    let mut walk = TreeWalk { reader, layout, visitor, leaf_origins: vec![], start, progress };
+    walk.root()?;
+    walk.leaves()
+}
+
+struct TreeWalk<'r, 'a, 'v, 'p> {
+    reader: &'r mut Reader<'a>,
+    layout: ValueLayout,
+    visitor: &'v mut dyn Visitor,
     leaf_origins: Vec<IVec3>,
-    steps: usize,
+    start: usize,
     progress: Progress<'p>,
 }
 
-impl<'a> Scan<'a, '_, '_> {
+impl TreeWalk<'_, '_, '_, '_> {
     fn root(&mut self) -> Result<()> {
-        let origin_bytes = 12;
-        let value_bytes = self.tree.layout.value_bytes();
-        let tiles = self.stream.u32()? as usize;
-        // Two masks at least make a child.
-        let children = self.stream.count(origin_bytes + UPPER.count() / 4)?;
-        if tiles.saturating_mul(origin_bytes + value_bytes + 1) > self.stream.remaining() {
-            return Err(self.stream.broken(format!(
-                "{tiles} tiles announced where {} bytes are left; the file is damaged, export or \
-                 copy it again",
-                self.stream.remaining()
-            )));
-        }
-        for _ in 0..tiles {
-            let origin = self.root_origin()?;
-            let value = self.stream.take(value_bytes)?;
-            let active = self.stream.u8()? != 0;
-            self.tree.root_tiles.push(RootTile { origin, value, active });
-        }
+        let Self { layout, visitor, .. } = self;
+        let children = self.reader.step("tree", |stream| {
+            if stream.u32()? != 1 {
+                return Err(Fault::Unsupported(
+                    "a tree with several buffers; save the file again with OpenVDB 2.0 or newer"
+                        .into(),
+                ));
+            }
+            let background = stream.take(layout.value_bytes())?;
+            let (tiles, children) = read_root(stream, layout)?;
+            visitor.background(background);
+            tiles.iter().try_for_each(|tile| visitor.root_tile(tile))?;
+            Ok(children)
+        })?;
         for _ in 0..children {
-            let origin = self.root_origin()?;
-            self.internal(UPPER, origin)?;
+            let origin = self.reader.step("tree", root_origin)?;
+            for lower in self.internal(UPPER, origin)? {
+                let leaves = self.internal(LOWER, lower)?;
+                // The masks come again with the values.
+                let masks = leaves.len() * (LEAF_VOXELS / 8);
+                self.reader.step("tree", |stream| stream.take(masks).map(|_| ()))?;
+                self.leaf_origins.extend(leaves);
+            }
         }
         Ok(())
     }
 
-    fn root_origin(&mut self) -> Result<IVec3> {
-        let origin = IVec3::new(self.stream.i32()?, self.stream.i32()?, self.stream.i32()?);
-        if origin & ((1 << ROOT_BITS) - 1) != IVec3::ZERO {
-            return Err(self.stream.broken(format!(
-                "a node at {origin}, which is no multiple of 4096; the file is damaged, export or \
-                 copy it again"
-            )));
-        }
-        Ok(origin)
+    /// Visits an internal node and returns where its children start.
+    fn internal(&mut self, level: TreeLevel, origin: IVec3) -> Result<Vec<IVec3>> {
+        self.check_progress()?;
+        let Self { layout, visitor, .. } = self;
+        self.reader.step("tree", |stream| {
+            let node = InternalNode::read(stream, layout, level, origin)?;
+            visitor.internal(&node)?;
+            let places = (0..level.count()).filter(|&place| node.children.is_on(place));
+            Ok(places.map(|place| level.origin(origin, place)).collect())
+        })
     }
 
-    fn internal(&mut self, level: TreeLevel, origin: IVec3) -> Result<()> {
-        self.step()?;
-        let layout = self.tree.layout;
-        let children = Mask::read(self.stream, level.count())?;
-        let active = Mask::read(self.stream, level.count())?;
+    fn leaves(&mut self) -> Result<()> {
+        let origins = std::mem::take(&mut self.leaf_origins);
+        let mut left = &origins[..];
+        while !left.is_empty() {
+            self.check_progress()?;
+            let Self { layout, visitor, .. } = self;
+            let visited = self.reader.step("values", |stream| {
+                let leaves = read_leaves(stream, layout, left)?;
+                visitor.leaves(&leaves)?;
+                Ok(leaves.len())
+            })?;
+            left = &left[visited..];
+        }
+        Ok(())
+    }
+
+    fn check_progress(&self) -> Result<()> {
+        match (self.progress)(self.reader.fraction(self.start)) {
+            true => Ok(()),
+            false => Err(Fault::Cancelled),
+        }
+    }
+}
+
+/// The tiles of the root and the number of its children.
+fn read_root<'a>(
+    stream: &mut Stream<'a>,
+    layout: &ValueLayout,
+) -> Result<(Vec<RootTile<'a>>, usize)> {
+    let origin_bytes = 12;
+    let value_bytes = layout.value_bytes();
+    let count = stream.u32()? as usize;
+    // Two masks at least make a child.
+    let children = stream.count(origin_bytes + UPPER.count() / 4)?;
+    if count.saturating_mul(origin_bytes + value_bytes + 1) > stream.remaining() {
+        return Err(stream.broken(format!(
+            "{count} tiles announced where {} bytes are left; the file is damaged, export or copy \
+             it again",
+            stream.remaining()
+        )));
+    }
+    let mut tiles = Vec::new();
+    for _ in 0..count {
+        let origin = root_origin(stream)?;
+        let value = stream.take(value_bytes)?;
+        let active = stream.u8()? != 0;
+        tiles.push(RootTile { origin, value, active });
+    }
+    Ok((tiles, children))
+}
+
+fn root_origin(stream: &mut Stream) -> Result<IVec3> {
+    let origin = IVec3::new(stream.i32()?, stream.i32()?, stream.i32()?);
+    if origin & ((1 << ROOT_BITS) - 1) != IVec3::ZERO {
+        return Err(stream.broken(format!(
+            "a node at {origin}, which is no multiple of 4096; the file is damaged, export or copy \
+             it again"
+        )));
+    }
+    Ok(origin)
+}
+
+impl<'a> InternalNode<'a> {
+    fn read(
+        stream: &mut Stream<'a>,
+        layout: &ValueLayout,
+        level: TreeLevel,
+        origin: IVec3,
+    ) -> Result<Self> {
+        let children = Mask::read(stream, level.count())?;
+        let active = Mask::read(stream, level.count())?;
         let stored = match layout.node_masks {
             true => level.count(),
             false => level.count() - children.count(),
         };
-        let values = PackedValues::read(self.stream, &layout, &active, stored)?;
-        self.tree.internal.push(InternalNode { level, origin, children, active, values });
-        for place in (0..level.count()).filter(|&place| children.is_on(place)) {
-            let origin = level.origin(origin, place);
-            if level.voxels == LOWER.voxels {
-                // The mask comes again with the values.
-                Mask::read(self.stream, LEAF_VOXELS)?;
-                self.leaf_origins.push(origin);
-            } else {
-                self.internal(LOWER, origin)?;
-            }
-        }
-        Ok(())
-    }
-
-    fn leaves(&mut self) -> Result<()> {
-        self.stream.enter("values");
-        for origin in std::mem::take(&mut self.leaf_origins) {
-            self.step()?;
-            let layout = self.tree.layout;
-            let active = Mask::read(self.stream, LEAF_VOXELS)?;
-            let mut buffers = 1;
-            if !layout.node_masks {
-                let _origin_again = self.stream.take(12)?;
-                buffers = self.stream.u8()?;
-            }
-            let values = PackedValues::read(self.stream, &layout, &active, LEAF_VOXELS)?;
-            for _ in 1..buffers {
-                PackedValues::read(self.stream, &layout, &active, LEAF_VOXELS)?;
-            }
-            self.tree.leaves.push(LeafNode { origin, active, values });
-        }
-        Ok(())
-    }
-
-    fn step(&mut self) -> Result<()> {
-        self.steps += 1;
-        match self.steps.is_multiple_of(SCAN_STEP) && !(self.progress)(0.0) {
-            true => Err(Fault::Cancelled),
-            false => Ok(()),
-        }
+        let values = PackedValues::read(stream, layout, &active, stored)?;
+        Ok(Self { level, origin, children, active, values })
     }
 }
 
-impl Tree<'_> {
-    /// Unpacks the values and builds the grid.
-    pub fn build<V: Voxel>(&self, progress: Progress) -> Result<SparseGrid<V>> {
-        let mut builder = GridBuilder::new(self.layout.value(self.background));
-        let background: V = builder.background();
-        for tile in &self.root_tiles {
-            let value = self.layout.value(tile.value);
-            builder.add_tile(tile.origin, 1 << ROOT_BITS, value, tile.active)?;
-        }
-        let mut codec = Codec::default();
-        for node in &self.internal {
-            if !progress(0.1) {
-                return Err(Fault::Cancelled);
+/// The leaves that start at `origins`, as many of them as are in memory.
+fn read_leaves<'a>(
+    stream: &mut Stream<'a>,
+    layout: &ValueLayout,
+    origins: &[IVec3],
+) -> Result<Vec<LeafNode<'a>>> {
+    let mut leaves = Vec::new();
+    for &origin in origins.iter().take(LEAVES_PER_STEP) {
+        let before = stream.clone();
+        match LeafNode::read(stream, layout, origin) {
+            Ok(leaf) => leaves.push(leaf),
+            Err(Fault::Beyond(_)) if !leaves.is_empty() => {
+                *stream = before;
+                break;
             }
-            self.add_tiles(node, background, &mut codec, &mut builder)?;
+            Err(fault) => return Err(fault),
         }
-        builder.add_leaves(self.decode_leaves(background, progress)?);
-        Ok(builder.finish(&|fraction| progress(0.6 + 0.4 * fraction))?)
     }
+    Ok(leaves)
+}
 
-    fn add_tiles<V: Voxel>(
-        &self,
-        node: &InternalNode,
-        background: V,
-        codec: &mut Codec,
-        builder: &mut GridBuilder<V>,
-    ) -> Result<()> {
-        let mut values = vec![background; node.level.count()];
-        node.values.decode(&self.layout, &node.active, background, codec, &mut values)?;
-        let mut stored = values.iter();
-        for place in 0..values.len() {
-            let is_child = node.children.is_on(place);
-            // Before version 222 only the places without a child had a value.
-            let value = match (self.layout.node_masks, is_child) {
-                (false, true) => continue,
-                _ => stored.next().copied().unwrap_or(background),
-            };
-            let active = node.active.is_on(place);
-            if !is_child && (active || value != background) {
-                let origin = node.level.origin(node.origin, place);
-                builder.add_tile(origin, 1 << node.level.voxels, value, active)?;
-            }
+impl<'a> LeafNode<'a> {
+    fn read(stream: &mut Stream<'a>, layout: &ValueLayout, origin: IVec3) -> Result<Self> {
+        let active = Mask::read(stream, LEAF_VOXELS)?;
+        let mut buffers = 1;
+        if !layout.node_masks {
+            let _origin_again = stream.take(12)?;
+            buffers = stream.u8()?;
         }
-        Ok(())
-    }
-
-    fn decode_leaves<V: Voxel>(&self, background: V, progress: Progress) -> Result<Vec<Leaf<V>>> {
-        let blank = |node: &LeafNode| Leaf {
-            origin: node.origin,
-            values: [background; LEAF_VOXELS],
-            active: node.active.words(),
-        };
-        let mut leaves: Vec<Leaf<V>> = self.leaves.iter().map(blank).collect();
-        let done = AtomicUsize::new(0);
-        let steps = leaves.len().div_ceil(DECODE_STEP) as f32;
-        leaves
-            .par_chunks_mut(DECODE_STEP)
-            .zip(self.leaves.par_chunks(DECODE_STEP))
-            .try_for_each_init(Codec::default, |codec, (leaves, nodes)| {
-                let done = done.fetch_add(1, Ordering::Relaxed) as f32;
-                if !progress(0.1 + 0.5 * done / steps) {
-                    return Err(Fault::Cancelled);
-                }
-                leaves.iter_mut().zip(nodes).try_for_each(|(leaf, node)| {
-                    let values = &mut leaf.values;
-                    node.values.decode(&self.layout, &node.active, background, codec, values)
-                })
-            })?;
-        Ok(leaves)
+        let values = PackedValues::read(stream, layout, &active, LEAF_VOXELS)?;
+        for _ in 1..buffers {
+            PackedValues::read(stream, layout, &active, LEAF_VOXELS)?;
+        }
+        Ok(Self { origin, active, values })
     }
 }

@@ -3,11 +3,10 @@
 //! With mask compression only active values are stored; a code selects the one or two values that
 //! inactive voxels have.
 
-use half::f16;
-
 use super::compression::{Buffer, Codec, Compression};
 use super::stream::{Result, Stream};
 use crate::volume::grid::Voxel;
+use crate::volume::half::widen_ieee;
 
 /// Storage type of a component.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,7 +62,7 @@ impl ValueLayout {
     pub fn value<V: Voxel>(&self, bytes: &[u8]) -> V {
         let mut value = [V::ZERO];
         match self.scalar {
-            Scalar::F16 => decode(bytes, &mut value, |bytes| f16::from_le_bytes(bytes).to_f32()),
+            Scalar::F16 => decode(bytes, &mut value, half_value),
             Scalar::F64 => decode(bytes, &mut value, |bytes| f64::from_le_bytes(bytes) as f32),
             _ => decode(bytes, &mut value, f32::from_le_bytes),
         }
@@ -72,13 +71,15 @@ impl ValueLayout {
 
     fn decode_buffer<V: Voxel>(&self, bytes: &[u8], values: &mut [V]) {
         match (self.is_half(), self.scalar) {
-            (true, _) | (_, Scalar::F16) => {
-                decode(bytes, values, |bytes| f16::from_le_bytes(bytes).to_f32());
-            }
+            (true, _) | (_, Scalar::F16) => decode(bytes, values, half_value),
             (false, Scalar::F64) => decode(bytes, values, |bytes| f64::from_le_bytes(bytes) as f32),
             (false, _) => decode(bytes, values, f32::from_le_bytes),
         }
     }
+}
+
+fn half_value(bytes: [u8; 2]) -> f32 {
+    widen_ieee(u16::from_le_bytes(bytes))
 }
 
 fn decode<V: Voxel, const N: usize>(
@@ -207,7 +208,8 @@ impl<'a> PackedValues<'a> {
             reason,
         })?;
         layout.decode_buffer(bytes, &mut values[..self.stored]);
-        if self.masked {
+        // Where all voxels are active, all values are in their places already.
+        if self.masked && self.stored < values.len() {
             self.spread(layout, active, background, values);
         }
         Ok(())
