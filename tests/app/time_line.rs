@@ -95,6 +95,16 @@ fn frames_are_rendered_once_and_played_from_the_flipbook() {
 }
 
 #[test]
+fn the_panel_says_what_is_shown_outside_of_the_frames() {
+    let Some(mut window) = window() else { return };
+    window.click(Role::Button, "Loop");
+    assert_eq!(window.document().settings.volume[0].outside, scene::settings::Outside::Loop);
+    assert_eq!(window.app().editor().undo_name(), Some("frames outside"));
+    window.click(Role::CheckBox, "Noise changes with the frame");
+    assert!(!window.document().settings.film.animate_seed);
+}
+
+#[test]
 fn both_sides_of_a_comparison_are_played() {
     let Some(mut window) = window() else { return };
     window.press(Modifiers::NONE, Key::C);

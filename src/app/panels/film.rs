@@ -55,6 +55,13 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>, window: Option<UVec2>, largest: 
             film.spp = u32::try_from(spp).unwrap_or(u32::MAX);
             edit = Some("max samples");
         }
+        if panel.has_frames {
+            let help = key_help("film.animate_seed");
+            let noise = ui.checkbox(&mut film.animate_seed, "Noise changes with the frame");
+            if noise.on_hover_text(help).changed() {
+                edit = Some("noise of frames");
+            }
+        }
         let bounces = Whole {
             name: "Max bounces",
             key: "path.max_scatters",

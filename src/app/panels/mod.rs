@@ -2,7 +2,8 @@
 //!
 //! - `column`: the column that they stand in.
 //! - `strategy`, `advanced`: toggles and presets, and what is behind them.
-//! - `volume`, `grids`, `emission`, `ramp`, `placement`: a volume, its grids, emission and place.
+//! - `volume`, `grids`, `emission`, `ramp`, `placement`, `sequence`: a volume, its grids,
+//!   emission, place and frames.
 //! - `lights`, `surfaces`, `camera`, `film`, `display`: the rest of the scene and of the view.
 
 pub mod advanced;
@@ -15,6 +16,7 @@ pub mod grids;
 pub mod lights;
 pub mod placement;
 pub mod ramp;
+pub mod sequence;
 pub mod strategy;
 pub mod surfaces;
 pub mod volume;
@@ -41,6 +43,8 @@ pub struct Panel<'a> {
     pub grids: &'a Grids,
     /// The guesses made when a bare volume was opened.
     pub notes: &'a [Note],
+    /// Whether the scene has more than one frame.
+    pub has_frames: bool,
     /// The box around all that fills space, or around the camera's target where nothing does.
     pub bounds: Aabb,
     /// The light whose keys and handles are shown.

@@ -3,7 +3,7 @@
 use egui::accesskit::Role;
 use egui::{CollapsingHeader, RichText, Ui, WidgetInfo};
 
-use super::{Panel, emission, grids, placement, section};
+use super::{Panel, emission, grids, placement, section, sequence};
 use crate::app::document::Document;
 use crate::app::document::up_axis;
 use crate::app::ui::chooser;
@@ -169,6 +169,7 @@ fn one(ui: &mut Ui, panel: &mut Panel<'_>, index: usize) {
         edit = edit.or(programs(ui, settings, index, grids));
     }
     let volume = &mut settings.volume[index];
+    edit = edit.or(sequence::show(ui, volume));
     edit = edit.or(grids::show(ui, volume, &opened, grids, panel.notes));
     edit = edit.or(medium(ui, volume, &opened));
     edit = edit.or(emission::show(ui, volume, &opened, grids));

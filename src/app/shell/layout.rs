@@ -85,6 +85,7 @@ impl App {
             editor: &mut self.editor,
             grids: self.live_render.grids(),
             notes: &self.opened.notes,
+            has_frames: self.time_line.range().is_some(),
             bounds,
             selected_light: &mut self.gizmo.selected,
             guided_flights,
