@@ -90,3 +90,17 @@ fn a_sequence_is_described_by_its_frames_and_its_largest_file() {
     assert_eq!(json["sequence"]["missing"], serde_json::json!([[3, 3]]));
     assert!(!place.succeed(&["info", "set/fire_0002.vdb"]).contains("Sequence"));
 }
+
+#[test]
+fn an_empty_frame_is_an_empty_picture() {
+    let place = place();
+    let empty = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/vdb/empty_grid.vdb");
+    std::fs::copy(empty, place.path("set/fire_0005.vdb")).unwrap();
+    let arguments =
+        [&["render", "set/fire_####.vdb", "--frame", "5", "-o", "empty.npy"], &SMALL[..]].concat();
+    let (code, _, stderr) = place.run(&arguments);
+    assert_eq!(code, 0, "{stderr}");
+    assert!(stderr.contains("fire_0005.vdb: the volume is empty"), "{stderr}");
+    let (_, values) = npy::read(&place.path("empty.npy")).unwrap();
+    assert!(values.iter().all(|pixel| pixel[0] == 0.0));
+}

@@ -44,7 +44,10 @@ pub(super) fn instances(
         let frame = volume_frame(settings, time)?;
         let built = built(settings, &frame, &key, cache, &part)?;
         gaps.extend(frame.gap);
-        let Some(built) = built else { continue };
+        let Some(built) = built else {
+            gaps.extend(frame.file.map(|file| Gap::Empty { file }));
+            continue;
+        };
         gaps.extend(built.gaps.iter().cloned());
         instances.push(placed(built, settings, &key)?);
     }

@@ -30,6 +30,11 @@ pub enum Gap {
         /// Number of the frame that is shown in its place, if there is one before.
         held: Option<i32>,
     },
+    /// There is nothing in the file to show.
+    Empty {
+        /// Name of the file.
+        file: String,
+    },
     /// A grid that other frames have is missing, and counts as zero.
     Grid {
         /// Name of the file.
@@ -48,6 +53,7 @@ impl fmt::Display for Gap {
             Self::Frame { frame, held: None, .. } => {
                 write!(f, "frame {frame} is missing; nothing is shown in its place")
             }
+            Self::Empty { .. } => f.write_str("the volume is empty"),
             Self::Grid { grid, .. } => {
                 write!(f, "this frame has no grid \"{grid}\", which counts as zero")
             }
@@ -59,7 +65,7 @@ impl Gap {
     /// Name of the file that is missing or lacks a grid.
     pub fn file(&self) -> &str {
         match self {
-            Self::Frame { file, .. } | Self::Grid { file, .. } => file,
+            Self::Frame { file, .. } | Self::Empty { file } | Self::Grid { file, .. } => file,
         }
     }
 }
