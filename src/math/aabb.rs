@@ -53,6 +53,17 @@ impl Aabb {
         Self { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
+    /// The box of the points that lie in both.
+    pub fn intersection(&self, other: &Self) -> Self {
+        Self { min: self.min.max(other.min), max: self.max.min(other.max) }
+    }
+
+    /// Whether a point lies in the box, its faces included; never for what is not a number.
+    #[inline]
+    pub fn contains(&self, point: Vec3A) -> bool {
+        (point.cmpge(self.min) & point.cmple(self.max)).all()
+    }
+
     /// The eight corners.
     pub fn corners(&self) -> [Vec3A; 8] {
         std::array::from_fn(|i| {

@@ -27,20 +27,22 @@ const ALL_ROWS: u32 = 2 * STRATIFIED_VERTICES * ROWS;
 /// | | | | |
 /// |---|---|---|---|
 /// | `PixelX`, `DirectionX` | `PixelY`, `DirectionY` | `Emission` | `TransmittanceA` |
-/// | `Distance` | `GuidedDistance` | `DirectionPick` | `TransmittanceB` |
+/// | `Distance` | `GuidedDistance` | `Time`, `DirectionPick` | `TransmittanceB` |
 /// | `LightX` | `LightY` | `LightCell` | `LightPick` |
 /// | `LightEmission` | `LightTransmittanceA` | `LightZ` | `LightTransmittanceB` |
 /// | `FireCount` | `LampCount` | `WalkCount` | `GuidedCount` |
 ///
 /// The first number of a row and the second make up the best pair. The camera has the slots
-/// `Pixel*`, every other vertex the slots `Direction*` in their place: both choose the ray that
-/// leaves.
+/// `Pixel*` and `Time`, every other vertex the slots `Direction*` in their place: both choose the
+/// ray that leaves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Slot {
     /// Horizontal position of a camera ray in its pixel, from left to right; at vertex 0 only.
     PixelX,
     /// Vertical position of a camera ray in its pixel, from top to bottom; at vertex 0 only.
     PixelY,
+    /// Time of the path within the shutter; at vertex 0 only.
+    Time,
     /// Jitter of the emission walk's reads along the ray that leaves the vertex.
     Emission,
     /// Jitter of the transmittance estimate along the ray that leaves the vertex.
@@ -94,7 +96,7 @@ impl Slot {
             Self::TransmittanceA => (0, 3),
             Self::Distance => (1, 0),
             Self::GuidedDistance => (1, 1),
-            Self::DirectionPick => (1, 2),
+            Self::Time | Self::DirectionPick => (1, 2),
             Self::TransmittanceB => (1, 3),
             Self::LightX => (2, 0),
             Self::LightY => (2, 1),
@@ -357,9 +359,10 @@ mod tests {
         assert!((sum / f64::from(n) - 1.0).abs() < 5e-3);
     }
 
-    const SLOTS: [Slot; 22] = [
+    const SLOTS: [Slot; 23] = [
         Slot::PixelX,
         Slot::PixelY,
+        Slot::Time,
         Slot::Emission,
         Slot::TransmittanceA,
         Slot::TransmittanceB,
@@ -393,8 +396,8 @@ mod tests {
     fn slots_share_numbers_only_between_pixel_and_turn() {
         for (i, a) in SLOTS.iter().enumerate() {
             for b in &SLOTS[..i] {
-                let pixel_and_turn = matches!(b, Slot::PixelX | Slot::PixelY)
-                    && matches!(a, Slot::DirectionX | Slot::DirectionY);
+                let pixel_and_turn = matches!(b, Slot::PixelX | Slot::PixelY | Slot::Time)
+                    && matches!(a, Slot::DirectionX | Slot::DirectionY | Slot::DirectionPick);
                 assert!(a.place() != b.place() || pixel_and_turn, "{a:?} and {b:?}");
             }
         }
@@ -467,8 +470,8 @@ mod tests {
             assert!(z.abs() < 5.0, "{what}: z {z}");
         };
         let of = |slot, vertex| move |pixel, s| number(0, pixel, s, slot, vertex);
-        for (i, &a) in SLOTS[2..].iter().enumerate() {
-            for &b in &SLOTS[2..2 + i] {
+        for (i, &a) in SLOTS[3..].iter().enumerate() {
+            for &b in &SLOTS[3..3 + i] {
                 check(correlation(of(a, 1), of(b, 1)), &format!("{a:?} and {b:?}"));
             }
             check(correlation(of(a, 1), of(a, 2)), &format!("{a:?} of two vertices"));
@@ -488,8 +491,8 @@ mod tests {
     #[test]
     fn means_are_unbiased() {
         for samples in [1, 3, 11, 100] {
-            for (k, &slot) in SLOTS[2..].iter().enumerate() {
-                let other = SLOTS[2 + (k + 5) % (SLOTS.len() - 2)];
+            for (k, &slot) in SLOTS[3..].iter().enumerate() {
+                let other = SLOTS[3 + (k + 5) % (SLOTS.len() - 3)];
                 // cos(2πk u) + (u < 1/3) v² with mean 1/9.
                 let value = |seed, s| {
                     let mut rng = PathRng::stratified(seed, UVec2::new(9, 4), s);
@@ -521,7 +524,7 @@ mod tests {
             }
         };
         let emission = of(Slot::Emission, 0);
-        for slot in [Slot::PixelX, Slot::PixelY, Slot::TransmittanceA, Slot::Distance] {
+        for slot in [Slot::PixelX, Slot::PixelY, Slot::TransmittanceA, Slot::Distance, Slot::Time] {
             let z = correlation(emission, of(slot, 0));
             assert!(z.abs() < 5.0, "{slot:?}: z {z}");
         }

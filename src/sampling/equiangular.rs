@@ -96,7 +96,7 @@ mod tests {
     use super::*;
     use crate::{math::PathRng, sampling::chi2::assert_numbers_follow};
 
-    const RAY: Ray = Ray { origin: Vec3A::ZERO, direction: Vec3A::X };
+    const RAY: Ray = Ray { origin: Vec3A::ZERO, direction: Vec3A::X, time: 0.0 };
 
     /// The share of samples below t is the integral of the density up to t, whatever the phase
     /// function, for points beside, before and behind the range and next to the ray.
