@@ -26,6 +26,8 @@ use crate::{
 
 /// Shadow rays stop short of their light by this share, so that they don't meet the light itself.
 const SHORT_OF_LIGHT: f32 = 1.0 - 1e-4;
+/// Time of the frame, which all have that only guides paths.
+const OF_FRAME: f32 = 0.0;
 
 /// Holds what MIS needs of the vertex that a ray left: its light samples, and the density of the
 /// ray's direction.
@@ -92,6 +94,8 @@ pub fn choice_among(strategy: &Strategy, among: LightGroup) -> LightChoice {
 #[derive(Clone, Copy, Debug)]
 struct LightDirection<'a> {
     from: &'a Receiver,
+    /// Time of the path, as rays have it.
+    time: f32,
     choice: &'a LightChoice,
     /// The light's index in the scene, and the probability of choosing it.
     light: (u32, f32),
@@ -110,11 +114,11 @@ enum LightTarget {
 }
 
 impl<'a> LightDirection<'a> {
-    /// Chooses a light by `pick`, in [0, 1), and draws a direction towards it; `None` where no
-    /// light can contribute.
+    /// Chooses a light by `pick`, in [0, 1), and draws a direction towards it from a receiver at a
+    /// time; `None` where no light can contribute.
     fn new(
         scene: &Scene,
-        from: &'a Receiver,
+        (from, time): (&'a Receiver, f32),
         choice: &'a LightChoice,
         pick: f64,
         rng: &mut PathRng,
@@ -129,6 +133,7 @@ impl<'a> LightDirection<'a> {
             let direction = (point - from.position).try_normalize()?;
             return Some(Self {
                 from,
+                time,
                 choice,
                 light: chosen,
                 direction,
@@ -137,7 +142,8 @@ impl<'a> LightDirection<'a> {
         }
         let light = light.sample(from.position, rng)?;
         let direction = light.direction;
-        Some(Self { from, choice, light: chosen, direction, at: LightTarget::Solid { light } })
+        let at = LightTarget::Solid { light };
+        Some(Self { from, time, choice, light: chosen, direction, at })
     }
 
     /// Density over solid angle of the direction, the choice of the light included.
@@ -178,7 +184,7 @@ impl<'a> LightDirection<'a> {
     }
 
     fn ray(&self) -> Ray {
-        Ray::new(self.from.position, self.direction)
+        Ray { origin: self.from.position, direction: self.direction, time: self.time }
     }
 
     /// Radiance from the sampled direction over its density `pdf`, and the number of collisions of
@@ -224,7 +230,7 @@ impl<'a> LightDirection<'a> {
             let volume = &scene.world.instances()[instance as usize];
             pdf_volume += q * volume.emission_pdf_at(point);
         });
-        let emission = scene.world.emission_at(point, ray.direction);
+        let emission = scene.world.emission_at(&ray, distance);
         if pdf_volume <= 0.0 || emission == Rgb::ZERO {
             return (Rgb::ZERO, 0);
         }
@@ -261,7 +267,7 @@ pub fn sample_lights(
 ) -> NeeSample {
     let from = vertex.receiver();
     let pick = rng.at64(Slot::LightPick);
-    let drawn = LightDirection::new(scene, &from, &sampling.choice, pick, rng);
+    let drawn = LightDirection::new(scene, (&from, vertex.time), &sampling.choice, pick, rng);
     let Some(light_direction) = drawn else {
         return NeeSample::default();
     };
@@ -295,7 +301,7 @@ pub fn point_of_light(
     rng: &mut PathRng,
 ) -> Option<Vec3A> {
     let pick = rng.at64(Slot::LightPick);
-    LightDirection::new(scene, from, choice, pick, rng)?.point()
+    LightDirection::new(scene, (from, OF_FRAME), choice, pick, rng)?.point()
 }
 
 /// Estimate of the radiance that one light sends to a receiver.
@@ -311,8 +317,7 @@ pub struct LightEstimate {
     pub radiance: Rgb,
 }
 
-/// Estimates the radiance that arrives at a receiver from lights, by one light sample and without
-/// scores of probes. Excludes the environment and scattered light.
+/// Estimates the radiance that arrives at a receiver from lights at the time of the frame, by one light sample and without scores of probes. Excludes the environment and scattered light.
 pub fn estimate_light(
     scene: &Scene,
     emission_estimator: &EmissionEstimator,
@@ -321,7 +326,7 @@ pub fn estimate_light(
 ) -> Option<LightEstimate> {
     let choice = choice(&scene.strategy);
     let pick = rng.at64(Slot::LightPick);
-    let light_direction = LightDirection::new(scene, from, &choice, pick, rng)?;
+    let light_direction = LightDirection::new(scene, (from, OF_FRAME), &choice, pick, rng)?;
     let pdf = light_direction.pdf_solid_angle(scene);
     (pdf > 0.0).then(|| LightEstimate {
         light: light_direction.light.0,
@@ -334,7 +339,7 @@ pub fn estimate_light(
 }
 
 /// Visibility of the light that `pick`, in [0, 1), chooses by the hierarchy: the transmittance to a
-/// receiver from a point of it.
+/// receiver from a point of it, at the time of the frame.
 pub fn visibility(
     scene: &Scene,
     from: &Receiver,
@@ -342,7 +347,7 @@ pub fn visibility(
     rng: &mut PathRng,
 ) -> Option<Visibility> {
     let choice = LightChoice { by: By::Hierarchy, ..choice(&scene.strategy) };
-    let light_direction = LightDirection::new(scene, from, &choice, pick, rng)?;
+    let light_direction = LightDirection::new(scene, (from, OF_FRAME), &choice, pick, rng)?;
     let (light, probability) = light_direction.light;
     let distance =
         light_direction.point().map_or(f32::INFINITY, |point| point.distance(from.position));

@@ -108,7 +108,7 @@ impl Frame {
             PathRng::new(self.seed, pixel, sample)
         };
         let offset = Vec2::new(rng.at(Slot::PixelX), rng.at(Slot::PixelY));
-        let ray = self.scene.camera.ray(self.size, pixel, offset);
+        let ray = self.scene.camera_ray(self.size, pixel, offset, &mut rng);
         let setup = match number {
             SampleNumber::Later(_, Prepared { setup: Some(setup) }) => setup,
             _ => &self.first,

@@ -117,7 +117,7 @@ impl Path<'_> {
                 observer.step(PathStep::Absorbed { point: ray.at(t) });
                 None
             }
-            Event::Scattered { t, phase } => Some(Vertex::volume(ray.at(t), ray.direction, phase)),
+            Event::Scattered { t, phase } => Some(Vertex::volume(&ray, t, phase)),
             Event::Reached => {
                 if at_end.arrives() {
                     let share = 1.0 - at_end.by_transmittance;
@@ -287,7 +287,7 @@ impl Path<'_> {
                 path.state.throughput *= guided.weight;
                 let Event::Scattered { t, phase } = guided.event else { return false };
                 let State { ray, throughput, .. } = path.state;
-                let vertex = Vertex::volume(ray.at(t), ray.direction, phase);
+                let vertex = Vertex::volume(&ray, t, phase);
                 let is_lit = throughput.is_finite() && throughput != Rgb::ZERO;
                 is_lit && path.split_and_scatter(&vertex, rng, observer)
             });

@@ -7,6 +7,8 @@
 //! computed from them, μ_s ∫ L ρ dω, and weighted by the transmittance along the ray. So probes
 //! serve every vertex, and stay valid when the camera moves.
 //!
+//! Probes see the volumes at the time of the frame, however they move while the shutter is open.
+//!
 //! Probes only guide: whatever they estimate, the picture's mean is unchanged, as long as no sample
 //! changes the density that guides it.
 

@@ -1,8 +1,11 @@
 //! A scene as light transport sees it.
 
+use glam::{UVec2, Vec2};
+
 use super::camera::Camera;
 use super::effective::SceneFacts;
 use super::strategy::Strategy;
+use crate::math::{PathRng, Ray, Slot};
 use crate::{light::Lights, surface::Surface, volume::world::World};
 
 /// Scene data that a path reads: camera, volumes, surfaces, lights and strategy.
@@ -41,6 +44,22 @@ impl Scene {
     pub fn with_strategy(self, strategy: Strategy) -> Self {
         let strategy = strategy.effective(self.facts());
         Self { strategy, ..self }
+    }
+
+    /// A camera ray in its pixel at a random time while the shutter is open. Where that is one
+    /// moment, or nothing moves, no number is drawn.
+    pub(super) fn camera_ray(
+        &self,
+        size: UVec2,
+        pixel: UVec2,
+        offset: Vec2,
+        rng: &mut PathRng,
+    ) -> Ray {
+        let ray = self.camera.ray(size, pixel, offset);
+        match self.world.open_seconds() {
+            0.0 => ray,
+            seconds => ray.at_time((rng.at(Slot::Time) - 0.5) * seconds),
+        }
     }
 
     /// The effective strategy: toggles that change nothing in this scene have one position.

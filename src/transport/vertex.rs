@@ -19,6 +19,8 @@ const SHARE_OF_EVEN: f32 = 0.2;
 pub struct Vertex {
     /// Position in world space.
     pub position: Vec3A,
+    /// Time of the path, as rays have it.
+    pub time: f32,
     kind: VertexKind,
 }
 
@@ -45,17 +47,20 @@ impl Vertex {
     /// A vertex on the surface at the end of `ray`; `None` for black surfaces.
     pub fn reflecting(end: &Intersection, ray: &Ray) -> Option<Self> {
         let bsdf = || Bsdf::new(end.surface.material, end.hit.normal, -ray.direction);
-        end.surface.reflects().then(|| Self::surface(&end.hit, bsdf()))
+        let surface = || Self { time: ray.time, ..Self::surface(&end.hit, bsdf()) };
+        end.surface.reflects().then(surface)
     }
 
-    /// A vertex in a volume, of a path with the unit direction `forward` before it.
-    pub fn volume(position: Vec3A, forward: Vec3A, phase: PhaseMix) -> Self {
-        Self { position, kind: VertexKind::Volume { phase, forward } }
+    /// A vertex in a volume at parameter `t` of the ray that the path came along.
+    pub fn volume(ray: &Ray, t: f32, phase: PhaseMix) -> Self {
+        let kind = VertexKind::Volume { phase, forward: ray.direction };
+        Self { position: ray.at(t), time: ray.time, kind }
     }
 
-    /// A vertex on a surface.
+    /// A vertex on a surface, at the time of the frame.
     pub fn surface(hit: &Hit, bsdf: Bsdf) -> Self {
-        Self { position: hit.point, kind: VertexKind::Surface { bsdf, offset: hit.offset() } }
+        let kind = VertexKind::Surface { bsdf, offset: hit.offset() };
+        Self { position: hit.point, time: 0.0, kind }
     }
 
     /// Whether the vertex lies on a surface.
@@ -135,7 +140,7 @@ impl Vertex {
 
     /// The ray that leaves along `direction` without meeting the surface it starts on.
     pub fn ray(&self, direction: Vec3A) -> Ray {
-        Ray::new(self.receiver().position, direction)
+        Ray { origin: self.receiver().position, direction, time: self.time }
     }
 
     /// Receiver at the vertex for light samples: the origin of every ray that leaves, and the side
@@ -165,7 +170,7 @@ mod tests {
         let axis = Vec3A::new(0.2, 1.0, 0.3).normalize();
         let mut phase = PhaseMix::default();
         phase.add(0.6, Rgb::ONE);
-        let vertex = Vertex::volume(Vec3A::ZERO, Vec3A::X, phase);
+        let vertex = Vertex::volume(&Ray::new(Vec3A::ZERO, Vec3A::X), 0.0, phase);
         let mut guiding = GuidingMixture::default();
         guiding.add(0.3, GuidingLobe::Airlight(Airlight::new(axis, 0.5)));
         guiding.add(0.2, GuidingLobe::Caustic(VonMisesFisher::new(axis, 40.0)));

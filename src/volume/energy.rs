@@ -22,8 +22,8 @@ use crate::{
 /// Points of a cell at which the emission is read. They form a rank-1 lattice with as many
 /// different coordinates on each axis, the outermost 1/32 from the faces.
 const POINTS: i32 = 16;
-/// Generators of the lattice, the first of them 1.
-const GENERATORS: [i32; 3] = [1, 3, 7];
+/// Generators of the lattice in space and time, the first of them 1.
+const GENERATORS: [i32; 4] = [1, 3, 7, 5];
 /// Share of its upper bound that every cell gets beside the emission read: sparks between the
 /// points must not be missed. A spark of one voxel in a cell of 4³ has a mean of 1/64 of its peak.
 const SHARE_OF_BOUND: f64 = 1.0 / 64.0;
@@ -80,7 +80,8 @@ impl Energy {
     }
 
     /// The distribution over a volume whose `emission`, lum ε, is bounded by `majorants`; `None`
-    /// without emission.
+    /// without emission. The emission is that at a point and at a fraction, 0 to 1, of the shutter's
+    /// time: the distribution is one for all times, and covers all that is lit at any.
     ///
     /// A cell's density is the mean of its emission and a small share of its upper bound, zero
     /// only where the upper bound is.
@@ -89,7 +90,7 @@ impl Energy {
     /// [`Error::Cancelled`](crate::error::Error::Cancelled) where `progress` says so.
     pub(super) fn varying(
         majorants: &MajorantGrid,
-        emission: impl Fn(Vec3A) -> f32 + Sync,
+        emission: impl Fn(Vec3A, f32) -> f32 + Sync,
         progress: Progress,
     ) -> Result<Option<Self>> {
         let all = majorants.grid();
@@ -277,12 +278,12 @@ fn volume_of(bounds: &Aabb) -> f64 {
     size.max(DVec3::ZERO).element_product()
 }
 
-fn mean_over(bounds: &Aabb, emission: &impl Fn(Vec3A) -> f32) -> f64 {
+fn mean_over(bounds: &Aabb, emission: &impl Fn(Vec3A, f32) -> f32) -> f64 {
     let sum: f64 = (0..POINTS)
         .map(|point| {
-            let lattice = GENERATORS.map(|g| ((point * g) % POINTS) as f32 + 0.5);
-            let u = Vec3A::from_array(lattice) / POINTS as f32;
-            magnitude(emission(bounds.min + u * bounds.size()))
+            let [x, y, z, time] = GENERATORS.map(|g| ((point * g) % POINTS) as f32 + 0.5);
+            let u = Vec3A::new(x, y, z) / POINTS as f32;
+            magnitude(emission(bounds.min + u * bounds.size(), time / POINTS as f32))
         })
         .sum();
     sum / f64::from(POINTS)

@@ -8,13 +8,14 @@ use super::{
     field::{RgbField, ScalarField},
     majorant::{Majorant, MajorantGrid},
     medium::Coefficients,
+    motion::Motion,
     region::Region,
 };
 use crate::error::{Progress, Result, report};
 use crate::math::{Aabb, Rgb, luminance};
 
-/// The properties of a medium. Coefficients are per unit of *world* length, whatever the volume's
-/// placement.
+/// The properties of a medium at the time of its grids. Coefficients are per unit of *world* length,
+/// whatever the volume's placement.
 #[derive(Clone, Debug)]
 pub struct MediumProperties {
     /// The density field; μ_t = `density_scale` · value.
@@ -76,6 +77,16 @@ impl MediumProperties {
         }
     }
 
+    /// [`MediumProperties::bounds_over`] for all times of a `motion`.
+    fn bounds_in_motion(&self, motion: &Motion, local: &Aabb) -> (Majorant, f32) {
+        let (sources, is_whole) = motion.filled_sources(local);
+        if sources.is_empty() {
+            return (Majorant::default(), 0.0);
+        }
+        let (majorant, minorant) = self.bounds_over(&sources);
+        (majorant, if is_whole { minorant } else { 0.0 })
+    }
+
     /// Majorant over a box, and minorant of the extinction's largest channel.
     fn bounds_over(&self, local: &Aabb) -> (Majorant, f32) {
         let (least, most) = self.density.range(local);
@@ -104,6 +115,7 @@ impl MediumProperties {
 pub struct Volume {
     region: Region,
     properties: MediumProperties,
+    motion: Option<Motion>,
     bounds: CoefficientBounds,
     /// Edge of a voxel in the volume's space; `None` where nothing has voxels.
     voxel: Option<f32>,
@@ -134,7 +146,8 @@ impl Volume {
         };
         let bounds = CoefficientBounds::Uniform(inside, majorant);
         let energy = Energy::uniform(region, emission);
-        Self { region, properties, bounds, voxel: None, chords: emission * size, energy }
+        let chords = emission * size;
+        Self { region, properties, motion: None, bounds, voxel: None, chords, energy }
     }
 
     /// A volume whose coefficients vary inside a box, bounded over cells of about `cell_size`.
@@ -149,31 +162,76 @@ impl Volume {
         voxel: Option<f32>,
         progress: Progress,
     ) -> Result<Self> {
-        let part = |index: usize| move |fraction: f32| progress((index as f32 + fraction) / 3.0);
-        let bounds_over = |cell: &Aabb| properties.bounds_over(cell);
-        let cells = MajorantGrid::build(bounds, cell_size, bounds_over, &part(0))?;
-        let chords = probe_chords(&cells, &properties, &part(1))?;
-        let emission = |local: Vec3A| luminance(properties.at(local).emission);
-        let energy = Energy::varying(&cells, emission, &part(2))?;
-        let region = Region::Box(bounds);
-        Ok(Self {
-            region,
-            properties,
-            bounds: CoefficientBounds::Cells(cells),
-            voxel,
-            chords,
-            energy,
-        })
+        Self::bounded(bounds, properties, None, (cell_size, voxel), progress)
     }
 
-    /// Region of the volume.
+    /// [`Volume::varying`] in `motion`. All its bounds hold while the shutter is open, and its box
+    /// is as large as that takes.
+    ///
+    /// # Errors
+    /// [`Error::Cancelled`](crate::error::Error::Cancelled) where `progress` says so.
+    pub fn moving(
+        motion: Motion,
+        properties: MediumProperties,
+        cell_size: Vec3A,
+        voxel: Option<f32>,
+        progress: Progress,
+    ) -> Result<Self> {
+        Self::bounded(motion.reach(), properties, Some(motion), (cell_size, voxel), progress)
+    }
+
+    fn bounded(
+        bounds: Aabb,
+        properties: MediumProperties,
+        motion: Option<Motion>,
+        (cell_size, voxel): (Vec3A, Option<f32>),
+        progress: Progress,
+    ) -> Result<Self> {
+        let part = |index: usize| move |fraction: f32| progress((index as f32 + fraction) / 3.0);
+        let bounds_over = |cell: &Aabb| match &motion {
+            None => properties.bounds_over(cell),
+            Some(motion) => properties.bounds_in_motion(motion, cell),
+        };
+        let cells = MajorantGrid::build(bounds, cell_size, bounds_over, &part(0))?;
+        // Read at times spread over the shutter, so that the light is sought where it passes.
+        let emission = |local: Vec3A, u: f32| match &motion {
+            None => luminance(properties.at(local).emission),
+            Some(motion) => motion
+                .source(local, (u - 0.5) * motion.shutter().open)
+                .map_or(0.0, |source| luminance(properties.at(source).emission)),
+        };
+        let chords = match properties.emission.is_some() {
+            true => probe_chords(&cells, &|local| emission(local, 0.5), &part(1))?,
+            false => Vec3A::ZERO,
+        };
+        let energy = Energy::varying(&cells, emission, &part(2))?;
+        let (region, bounds) = (Region::Box(bounds), CoefficientBounds::Cells(cells));
+        Ok(Self { region, properties, motion, bounds, voxel, chords, energy })
+    }
+
+    /// Region of the volume; of one in motion wherever it can be while the shutter is open.
     pub fn region(&self) -> &Region {
         &self.region
     }
 
-    /// Properties of the volume's medium.
+    /// Properties of the volume's medium, which hold at [`Volume::source`] of a point.
     pub fn properties(&self) -> &MediumProperties {
         &self.properties
+    }
+
+    /// Motion of the volume; `None` for one that stands still.
+    pub fn motion(&self) -> Option<&Motion> {
+        self.motion.as_ref()
+    }
+
+    /// The point of the volume's space that has moved to `local` at a time, in seconds after that of
+    /// the frame; `None` where there is nothing. `local` itself where nothing moves.
+    #[inline]
+    pub fn source(&self, local: Vec3A, time: f32) -> Option<Vec3A> {
+        match &self.motion {
+            None => Some(local),
+            Some(motion) => motion.source(local, time),
+        }
     }
 
     /// Bounds of the volume's coefficients.
@@ -197,17 +255,14 @@ impl Volume {
     }
 }
 
-/// Sums the emission at the cells' centers along every row of cells of each axis, and keeps the
-/// largest sum. It only sets the unit of the boost amount, so a coarse sum will do; but sparks
+/// Sums the emission at the cells' centers along every row of cells of each axis, at the time of the
+/// frame, and keeps the largest sum. It only sets the unit of the boost amount, so a coarse sum will do; but sparks
 /// between the centers count too, half a cell long, so that the unit does not vanish.
 fn probe_chords(
     cells: &MajorantGrid,
-    properties: &MediumProperties,
+    emission: &dyn Fn(Vec3A) -> f32,
     progress: Progress,
 ) -> Result<Vec3A> {
-    if !properties.emission.is_some() {
-        return Ok(Vec3A::ZERO);
-    }
     let mut brightest = 0.0_f32;
     let mut rows = std::collections::BTreeMap::<(usize, i32, i32), f32>::new();
     for (index, majorant) in cells.cells().iter().enumerate() {
@@ -217,7 +272,7 @@ fn probe_chords(
         report(progress, index as f32 / cells.cells().len() as f32)?;
         let cell = cells.grid().cell(index);
         let region = cells.grid().whole(cell);
-        let emission = luminance(properties.at(region.center()).emission);
+        let emission = emission(region.center());
         brightest = brightest.max(majorant.emission);
         for axis in 0..3 {
             let row: IVec3 = cell;

@@ -11,6 +11,7 @@ mod half;
 mod local_volume;
 pub mod majorant;
 pub mod medium;
+mod motion;
 pub mod nvdb;
 mod packing;
 pub mod phase;
@@ -21,5 +22,6 @@ pub mod vdb;
 pub mod world;
 
 pub use local_volume::{CoefficientBounds, MediumProperties, Volume};
+pub use motion::{Motion, Shutter, VelocityField};
 pub use region::Region;
 pub use taper::Taper;

@@ -29,6 +29,8 @@ pub struct World {
     bounded_indices: Vec<u32>,
     unbounded: Vec<u32>,
     emissive: Emissive,
+    /// Seconds that the shutter is open.
+    open: f32,
 }
 
 impl World {
@@ -45,7 +47,15 @@ impl World {
         let boxes: Vec<Aabb> =
             bounded_indices.iter().map(|&i| instances[i as usize].bounds).collect();
         let (bounded, emissive) = (Bvh::new(&boxes), Emissive::new(&instances));
-        Self { instances, bounded, bounded_indices, unbounded, emissive }
+        let moving = instances.iter().filter_map(|instance| instance.volume.motion());
+        let open = moving.map(|motion| motion.shutter().open).reduce(f32::min).unwrap_or(0.0);
+        Self { instances, bounded, bounded_indices, unbounded, emissive, open }
+    }
+
+    /// Seconds that the shutter is open, half of them before the time of the frame: the bounds of all
+    /// volumes hold for so long. 0 where nothing moves, or all is seen at one moment.
+    pub fn open_seconds(&self) -> f32 {
+        self.open
     }
 
     /// The placed volumes.
@@ -111,18 +121,18 @@ impl World {
         self.emissive.along(&self.instances, ray, visit);
     }
 
-    /// ε at a point; `along` is any unit direction.
-    pub fn emission_at(&self, point: Vec3A, along: Vec3A) -> Rgb {
-        let mut medium = self.around(point, along);
+    /// ε at parameter `t` of a ray, at its time.
+    pub fn emission_at(&self, ray: &Ray, t: f32) -> Rgb {
+        let mut medium = self.around(Ray { origin: ray.at(t), ..*ray });
         match medium.next_segment() {
             Some(segment) => medium.emission(segment.t0),
             None => Rgb::ZERO,
         }
     }
 
-    /// Extinction and scattering at a point; `None` in empty space.
+    /// Extinction and scattering at a point at the time of the frame; `None` in empty space.
     pub fn matter_at(&self, point: Vec3A) -> Option<Matter> {
-        let mut medium = self.around(point, Vec3A::X);
+        let mut medium = self.around(Ray::new(point, Vec3A::X));
         let segment = medium.next_segment()?;
         let (mu_t, mu_s) = medium.extinction(segment.t0);
         let g = medium.phase(segment.t0).mean_cosine();
@@ -130,9 +140,9 @@ impl World {
     }
 
     /// The medium along a ray so short that it is a point.
-    fn around(&self, point: Vec3A, along: Vec3A) -> MediumRay<'_> {
-        let reach = point.abs().max_element().max(1.0) * (8.0 * f32::EPSILON);
-        self.along(Ray::new(point, along), reach)
+    fn around(&self, ray: Ray) -> MediumRay<'_> {
+        let reach = ray.origin.abs().max_element().max(1.0) * (8.0 * f32::EPSILON);
+        self.along(ray, reach)
     }
 }
 

@@ -147,7 +147,7 @@ fn glowing_slab() -> Scene {
 fn vertex_below(depth: f32) -> Vertex {
     let mut phase = PhaseMix::default();
     phase.add(0.0, flambeau::math::Rgb::ONE);
-    Vertex::volume(Vec3A::new(0.1, 0.2, -depth), Vec3A::X, phase)
+    Vertex::volume(&Ray::new(Vec3A::new(0.1, 0.2, -depth), Vec3A::X), 0.0, phase)
 }
 
 /// ∫ of the second moment of what one look brings over all directions, with a MIS weight or

@@ -45,7 +45,7 @@ impl<'s> PilotPixel<'s> {
         let mut rng = PathRng::new(SEED, pixel, u32::MAX);
         let rays = [(); 2].map(|()| {
             let offset = Vec2::new(rng.uniform(), rng.uniform());
-            scene.camera.ray(size, pixel, offset)
+            scene.camera_ray(size, pixel, offset, &mut rng)
         });
         Self { scene, pixel, rays }
     }

@@ -1,15 +1,16 @@
 //! The medium along one ray: every volume it enters, each with its own cells, merged into segments
 //! from near to far.
 
+use glam::Vec3A;
 use smallvec::SmallVec;
 
 use super::instance::Instance;
 use crate::math::{Ray, Rgb};
-use crate::volume::CoefficientBounds;
 use crate::volume::cells::CellWalk;
 use crate::volume::majorant::Majorant;
 use crate::volume::medium::{Coefficients, Segment};
 use crate::volume::phase::PhaseMix;
+use crate::volume::{CoefficientBounds, MediumProperties};
 
 /// A volume that the ray enters. Few bytes, since a ray may meet many.
 #[derive(Clone, Copy, Debug)]
@@ -181,7 +182,7 @@ impl<'w> MediumRay<'w> {
         let mut mix = PhaseMix::default();
         if let [cursor] = self.inside.as_slice() {
             let properties = cursor.instance.volume.properties();
-            let albedo = properties.albedo(cursor.local.at(t));
+            let albedo = cursor.read(t, |properties, at| properties.albedo(at));
             mix.add(properties.g, albedo);
             return (albedo, mix);
         }
@@ -318,11 +319,20 @@ impl<'w> Cursor<'w> {
         }
     }
 
+    /// Reads the medium where that comes from which is at `t` at the time of the ray; zero where
+    /// nothing is.
+    #[inline]
+    fn read<T: Default>(&self, t: f32, of: impl FnOnce(&MediumProperties, Vec3A) -> T) -> T {
+        let volume = &self.instance.volume;
+        let source = volume.source(self.local.at(t), self.local.time);
+        source.map_or_else(T::default, |source| of(volume.properties(), source))
+    }
+
     #[inline]
     fn mu_t(&self, t: f32) -> Rgb {
         match self.instance.volume.bounds() {
             CoefficientBounds::Uniform(coefficients, _) => coefficients.mu_t,
-            CoefficientBounds::Cells(_) => self.instance.volume.properties().mu_t(self.local.at(t)),
+            CoefficientBounds::Cells(_) => self.read(t, MediumProperties::mu_t),
         }
     }
 
@@ -330,9 +340,7 @@ impl<'w> Cursor<'w> {
     fn extinction(&self, t: f32) -> (Rgb, Rgb) {
         match self.instance.volume.bounds() {
             CoefficientBounds::Uniform(coefficients, _) => (coefficients.mu_t, coefficients.mu_s),
-            CoefficientBounds::Cells(_) => {
-                self.instance.volume.properties().extinction(self.local.at(t))
-            }
+            CoefficientBounds::Cells(_) => self.read(t, MediumProperties::extinction),
         }
     }
 
@@ -340,9 +348,7 @@ impl<'w> Cursor<'w> {
     fn emission(&self, t: f32) -> Rgb {
         match self.instance.volume.bounds() {
             CoefficientBounds::Uniform(coefficients, _) => coefficients.emission,
-            CoefficientBounds::Cells(_) => {
-                self.instance.volume.properties().emission(self.local.at(t))
-            }
+            CoefficientBounds::Cells(_) => self.read(t, MediumProperties::emission),
         }
     }
 
@@ -350,7 +356,7 @@ impl<'w> Cursor<'w> {
     fn coefficients(&self, t: f32) -> Coefficients {
         match self.instance.volume.bounds() {
             CoefficientBounds::Uniform(coefficients, _) => *coefficients,
-            CoefficientBounds::Cells(_) => self.instance.volume.properties().at(self.local.at(t)),
+            CoefficientBounds::Cells(_) => self.read(t, MediumProperties::at),
         }
     }
 }

@@ -66,12 +66,13 @@ impl Instance {
         self.world_volume
     }
 
-    /// A ray of the world in the volume's space; its parameter stays the world's.
+    /// A ray of the world in the volume's space; its parameter and its time stay the world's.
     pub(super) fn local_ray(&self, ray: &Ray) -> Ray {
-        Ray::new(
-            self.local_from_world.transform_point3a(ray.origin),
-            self.local_from_world.transform_vector3a(ray.direction),
-        )
+        Ray {
+            origin: self.local_from_world.transform_point3a(ray.origin),
+            direction: self.local_from_world.transform_vector3a(ray.direction),
+            time: ray.time,
+        }
     }
 
     /// World box around the volume; infinite for a volume without borders.
