@@ -4,8 +4,8 @@ use std::path::Path;
 
 use flambeau::scene::settings::{
     Albedo, Color, EmissionMode, Extent, GridKey, LightKind, LightSettings, MaterialKind,
-    MaterialSettings, Normalize, RampKind, SurfaceSettings, SurfaceShape, VolumeSettings,
-    VolumeShape,
+    MaterialSettings, Normalize, RampKind, SurfaceSettings, SurfaceShape, VelocitySettings,
+    VelocityUnit, VolumeSettings, VolumeShape,
 };
 use flambeau::scene::{self, Overrides, Settings, keys};
 use flambeau::transport::strategy::{BoostMode, Preset};
@@ -178,6 +178,25 @@ const MALFORMED: &[(&str, &[&str])] = &[
     ("[[volume]]\nshape = 'sphere'\nradius = 0", &["volume.0.radius:", "> 0"]),
     ("[[volume]]\nshape = 'box'\nscale = 0", &["volume.0.scale:", "not 0"]),
     ("[[volume]]\nshape = 'box'\nalbedo = 1.5", &["volume.0.albedo:", "0..1"]),
+    ("[time]\nshutter = 1.5", &["time.shutter:", "0..1"]),
+    ("[time]\nshutter = -0.5", &["time.shutter:", "0..1"]),
+    ("[[volume]]\nshape = 'box'\nvelocity.grid = 'v'", &["volume.0.velocity:", "only a file"]),
+    (
+        "[[volume]]\nfile = 'a.vdb'\nvelocity.unit = 'frame'",
+        &["volume.0.velocity.grid:", "name a grid"],
+    ),
+    (
+        "[[volume]]\nfile = 'a.vdb'\nvelocity = { grid = 'v', grids = ['x', 'y', 'z'] }",
+        &["volume.0.velocity.grids:", "leave one of them out"],
+    ),
+    (
+        "[[volume]]\nfile = 'a.vdb'\nvelocity.grids = ['x', 'y']",
+        &["volume.0.velocity.grids:", "[string, string, string]"],
+    ),
+    (
+        "[[volume]]\nfile = 'a.vdb'\nvelocity = { grid = 'v', unit = 'hour' }",
+        &["volume.0.velocity.unit:", "\"second\"", "\"frame\""],
+    ),
     ("[[volume]]\nshape = 'box'\nphase.g = 1", &["volume.0.phase.g:", "-0.999..0.999"]),
     (
         "[[volume]]\nshape = 'box'\nscale = 2\nmatrix = [[1,0,0,0],[0,1,0,0],[0,0,1,0]]",
@@ -471,6 +490,14 @@ fn any_volume(rng: &mut impl Rng, home: &Path) -> VolumeSettings {
     volume.emission.color = maybe(rng, color);
     volume.emission.kelvin_offset = maybe(rng, |rng| rng.random());
     volume.emission.normalize = maybe(rng, |_| Normalize::T4);
+    if volume.file.is_some() {
+        volume.velocity = VelocitySettings {
+            grid: None,
+            grids: Some(["v.x".into(), "v.y".into(), "v.z".into()]),
+            unit: VelocityUnit::Frame,
+            scale: rng.random(),
+        };
+    }
     volume.emission.stops = maybe(rng, |rng| vec![[0.0; 4], [1.5, rng.random(), 0.25, 1e-8]]);
     volume
 }

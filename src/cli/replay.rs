@@ -57,8 +57,12 @@ impl Observer for Log {
         let line = match step {
             PathStep::Ray { ray, t_max, throughput } => {
                 self.rays += 1;
+                let time = match ray.time {
+                    0.0 => String::new(),
+                    seconds => format!(", {seconds} s after the frame"),
+                };
                 format!(
-                    "ray {} from {} towards {}, length {t_max}, throughput {}",
+                    "ray {} from {} towards {}, length {t_max}, throughput {}{time}",
                     self.rays,
                     triple(ray.origin),
                     triple(ray.direction),

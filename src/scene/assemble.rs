@@ -1,5 +1,6 @@
 //! Settings to the core's scene.
 
+mod motion;
 mod placement;
 mod source;
 mod surfaces;

@@ -8,7 +8,7 @@ use std::time::SystemTime;
 use glam::DAffine3;
 
 use super::sequence::Gap;
-use super::settings::VolumeSettings;
+use super::settings::{TimeSettings, VolumeSettings};
 use super::{embedded, grid_address};
 use crate::error::{Error, Progress, Result};
 use crate::files::path_of;
@@ -31,6 +31,8 @@ pub struct VolumeCache {
 pub(super) struct BuiltVolume {
     /// The settings without name and placement.
     pub(super) settings: VolumeSettings,
+    /// The time within its frame, of a volume in motion.
+    pub(super) time: Option<TimeSettings>,
     /// The file it was built from, if any.
     pub(super) file: Option<Arc<VolumeFile>>,
     /// The volume that was built.
@@ -120,14 +122,16 @@ impl VolumeCache {
         Ok(file)
     }
 
-    /// A volume built before from the same settings and the same state of the file.
+    /// A volume built before from the same settings, for the same time within its frame and from the
+    /// same state of the file.
     pub(super) fn built(
         &self,
         settings: &VolumeSettings,
+        time: Option<TimeSettings>,
         file: Option<&Arc<VolumeFile>>,
     ) -> Option<BuiltVolume> {
         let volumes = locked(&self.volumes);
-        volumes.iter().find(|built| built.is_of(settings, file)).cloned()
+        volumes.iter().find(|built| built.is_of(settings, time, file)).cloned()
     }
 
     /// Keeps a volume until a scene is built without it.
@@ -144,7 +148,9 @@ impl VolumeCache {
         let mut room = self.room;
         let mut kept: Vec<BuiltVolume> = Vec::new();
         for built in others.into_iter().rev() {
-            let is_frame = shown.iter().any(|one| one.settings == built.settings);
+            let is_of =
+                |one: &BuiltVolume| one.settings == built.settings && one.time == built.time;
+            let is_frame = shown.iter().any(is_of);
             let bytes = built.bytes();
             if is_frame && bytes <= room {
                 room -= bytes;
@@ -165,13 +171,18 @@ impl BuiltVolume {
         self.file.as_ref().map_or(0, |file| file.bytes())
     }
 
-    fn is_of(&self, settings: &VolumeSettings, file: Option<&Arc<VolumeFile>>) -> bool {
+    fn is_of(
+        &self,
+        settings: &VolumeSettings,
+        time: Option<TimeSettings>,
+        file: Option<&Arc<VolumeFile>>,
+    ) -> bool {
         let same_file = match (&self.file, file) {
             (Some(a), Some(b)) => Arc::ptr_eq(a, b),
             (None, None) => true,
             _ => false,
         };
-        same_file && self.settings == *settings
+        same_file && self.settings == *settings && self.time == time
     }
 }
 

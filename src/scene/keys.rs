@@ -150,6 +150,8 @@ mod tests {
                 "time.range",
                 "volume.N.emission.grid",
                 "volume.N.albedo.grid",
+                "volume.N.velocity.grid",
+                "volume.N.velocity.grids",
                 "surface.N.half_size",
             ];
             assert_eq!(

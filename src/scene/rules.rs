@@ -5,7 +5,7 @@ use glam::{Mat3, Vec3};
 
 use super::settings::{
     CameraSettings, EmissionMode, LightKind, LightSettings, RampKind, Settings, SurfaceSettings,
-    SurfaceShape, VolumeSettings, VolumeShape,
+    SurfaceShape, VelocitySettings, VolumeSettings, VolumeShape,
 };
 use crate::error::{Error, Result};
 
@@ -69,6 +69,7 @@ fn volume(volume: &VolumeSettings) -> Result<(), Fault> {
         return fault("frame_range", "the first frame comes after the last");
     }
     placement(volume)?;
+    velocity(volume)?;
     if volume.shape == Some(VolumeShape::Everywhere) {
         everywhere(volume)?;
     }
@@ -103,6 +104,23 @@ fn placement(volume: &VolumeSettings) -> Result<(), Fault> {
         return fault("matrix", "its first three columns flatten space; they must span it");
     }
     Ok(())
+}
+
+fn velocity(volume: &VolumeSettings) -> Result<(), Fault> {
+    let velocity = &volume.velocity;
+    if *velocity == VelocitySettings::default() {
+        return Ok(());
+    }
+    if volume.file.is_none() {
+        return fault("velocity", "a shape has no grids to move by; only a file has");
+    }
+    match (&velocity.grid, &velocity.grids) {
+        (None, None) => {
+            fault("velocity.grid", "name a grid of vectors, or three of numbers in grids")
+        }
+        (Some(_), Some(_)) => fault("velocity.grids", "grids replaces grid; leave one of them out"),
+        _ => Ok(()),
+    }
 }
 
 /// Without extinction, emission that fills space adds up to infinity.

@@ -13,6 +13,7 @@ mod or_default;
 mod surface;
 mod time;
 mod values;
+mod velocity;
 mod volume;
 
 pub use camera::CameraSettings;
@@ -22,6 +23,7 @@ pub use light::{LightKind, LightSettings};
 pub use surface::{MaterialKind, MaterialSettings, SurfaceSettings, SurfaceShape};
 pub use time::{MAX_FRAME, TimeSettings};
 pub use values::{Albedo, Axis, Color, Extent, GridKey};
+pub use velocity::{VelocitySettings, VelocityUnit};
 pub use volume::{DensitySettings, Outside, PhaseSettings, RampKind, VolumeSettings, VolumeShape};
 
 use or_default::is_default;

@@ -117,6 +117,22 @@ impl<'a> GridSource<'a> {
         name: &str,
         field: &str,
     ) -> Result<Option<(GridValues, Affine3A, Option<Taper>)>> {
+        let Some(grid) = self.find(name, field)? else { return Ok(None) };
+        let local_from_grid = self.local_from_grid(&grid);
+        self.voxel = self.voxel.min(shortest_edge(&local_from_grid));
+        let local_from_grid = local_from_grid.as_affine3a();
+        self.bounds = self.bounds.union(&support(&grid).transformed(&local_from_grid));
+        Ok(Some((grid.values, local_from_grid.inverse(), grid.taper)))
+    }
+
+    /// Transform from the index space of a grid, of a frustum its spread space, to the volume's own.
+    pub(super) fn local_from_grid(&mut self, grid: &PlacedGrid) -> DAffine3 {
+        let file_from_local = *self.file_from_local.get_or_insert(grid.world_from_index);
+        file_from_local.inverse() * grid.world_from_index
+    }
+
+    /// A grid of the file; `None` for one that it lacks and that counts as zero.
+    pub(super) fn find(&mut self, name: &str, field: &str) -> Result<Option<PlacedGrid>> {
         if (self.lacks)(name)? {
             let (file, grid) = (self.file.name().to_owned(), name.to_owned());
             self.gaps.push(Gap::Grid { file, grid });
@@ -130,12 +146,12 @@ impl<'a> GridSource<'a> {
             );
             return Err(Error::unsupported(self.file.name(), field, reason));
         }
-        let file_from_local = *self.file_from_local.get_or_insert(grid.world_from_index);
-        let local_from_grid = file_from_local.inverse() * grid.world_from_index;
-        self.voxel = self.voxel.min(shortest_edge(&local_from_grid));
-        let local_from_grid = local_from_grid.as_affine3a();
-        self.bounds = self.bounds.union(&support(&grid).transformed(&local_from_grid));
-        Ok(Some((grid.values, local_from_grid.inverse(), grid.taper)))
+        Ok(Some(grid))
+    }
+
+    /// Name of the file.
+    pub(super) fn file_name(&self) -> &str {
+        self.file.name()
     }
 }
 

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::{DAffine3, Vec3A};
 
 use super::{
+    motion::{motion, time_in_motion},
     placement::world_from_file,
     source::{GridSource, ShapeSource, VolumeSource},
 };
@@ -42,7 +43,8 @@ pub(super) fn instances(
         }
         let key = format!("volume.{index}");
         let frame = volume_frame(settings, time)?;
-        let built = built(settings, &frame, &key, cache, &part)?;
+        let time = time_in_motion(settings, time);
+        let built = built((settings, time), &frame, &key, cache, &part)?;
         gaps.extend(frame.gap);
         let Some(built) = built else {
             gaps.extend(frame.file.map(|file| Gap::Empty { file }));
@@ -66,9 +68,10 @@ fn placed(built: BuiltVolume, settings: &VolumeSettings, key: &str) -> Result<In
     Ok(Instance::new(built.volume, world_from_local))
 }
 
-/// A volume of a shape or of the file of its `frame`; `None` if that shows nothing.
+/// A volume of a shape or of the file of its `frame`, with its time within the frame if it moves;
+/// `None` if that shows nothing.
 fn built(
-    settings: &VolumeSettings,
+    (settings, time): (&VolumeSettings, Option<TimeSettings>),
     frame: &VolumeFrame,
     key: &str,
     cache: &VolumeCache,
@@ -79,8 +82,8 @@ fn built(
         None if settings.file.is_some() => return Ok(None),
         None => None,
     };
-    let unplaced = unplaced(settings);
-    if let Some(known) = cache.built(&unplaced, file.as_ref()) {
+    let unplaced = unplaced(settings, time.is_some());
+    if let Some(known) = cache.built(&unplaced, time, file.as_ref()) {
         return Ok(Some(known));
     }
     let built = match (&file, settings.shape) {
@@ -92,7 +95,7 @@ fn built(
                 }
                 None => Ok(false),
             };
-            from_file(file, &unplaced, key, &lacks, progress)?
+            from_file(file, (&unplaced, time), key, &lacks, progress)?
         }
         (None, Some(shape)) => {
             let shape = ShapeSource::new(shape, &unplaced);
@@ -105,14 +108,17 @@ fn built(
     };
     let Some((volume, file_from_local, gaps)) = built else { return Ok(None) };
     let volume = Arc::new(volume);
-    let built = BuiltVolume { settings: unplaced, file, volume, file_from_local, gaps };
+    let built = BuiltVolume { settings: unplaced, time, file, volume, file_from_local, gaps };
     cache.keep(built.clone());
     Ok(Some(built))
 }
 
-/// The settings without what does not change the volume itself.
-fn unplaced(settings: &VolumeSettings) -> VolumeSettings {
+/// The settings without what does not change the volume itself, as the velocity does not unless it
+/// `moves`.
+fn unplaced(settings: &VolumeSettings, moves: bool) -> VolumeSettings {
+    let velocity = if moves { settings.velocity.clone() } else { Default::default() };
     VolumeSettings {
+        velocity,
         name: String::new(),
         frame_offset: 0,
         frame_range: None,
@@ -126,17 +132,17 @@ fn unplaced(settings: &VolumeSettings) -> VolumeSettings {
 }
 
 /// A volume of the grids of a file, with its place in the file's space and the grids that it lacks;
-/// `None` if there is nothing in them.
+/// `None` if there is nothing in them. With a `time` it moves.
 fn from_file(
     file: &VolumeFile,
-    settings: &VolumeSettings,
+    (settings, time): (&VolumeSettings, Option<TimeSettings>),
     key: &str,
     lacks: &dyn Fn(&str) -> Result<bool>,
     progress: Progress,
 ) -> Result<Option<(Volume, DAffine3, Vec<Gap>)>> {
     let mut source = VolumeSource::Grids(GridSource::new(file, lacks, progress));
     let properties = properties(&mut source, settings, key)?;
-    let VolumeSource::Grids(grids) = source else {
+    let VolumeSource::Grids(mut grids) = source else {
         return Err(Error::invalid(file.name(), key, "the file has no grids"));
     };
     if grids.bounds().is_empty() {
@@ -144,7 +150,13 @@ fn from_file(
     }
     let cell_size = Vec3A::splat(CELL_VOXELS);
     let voxel = grids.voxel();
-    let volume = Volume::varying(grids.bounds(), properties, cell_size, voxel, progress)?;
+    let volume = match time {
+        None => Volume::varying(grids.bounds(), properties, cell_size, voxel, progress)?,
+        Some(time) => {
+            let motion = motion(&mut grids, &settings.velocity, &time, key)?;
+            Volume::moving(motion, properties, cell_size, voxel, progress)?
+        }
+    };
     Ok(Some((volume, grids.file_from_local(), grids.into_gaps())))
 }
 

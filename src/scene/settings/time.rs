@@ -13,18 +13,23 @@ pub struct TimeSettings {
     /// Frames per second of the scene.
     #[schemars(extend("unit" = "frames/s", "exclusiveMinimum" = 0.0, "maximum" = 1000.0))]
     pub fps: f64,
-    /// The frame that is shown or rendered. Volumes use the nearest whole frame.
+    /// The frame that is shown or rendered. Volumes use the nearest whole frame, from which their
+    /// velocity moves them on to a fraction.
     #[schemars(extend("unit" = "frames"), range(min = -MAX_FRAME, max = MAX_FRAME))]
     pub frame: f64,
     /// The first and the last frame of the time line; absent, those on the disk.
     #[schemars(extend("unit" = "frames", "default" = null))]
     #[schemars(extend("minimum" = -MAX_FRAME, "maximum" = MAX_FRAME))]
     pub range: Option<[i32; 2]>,
+    /// The fraction of a frame that the shutter is open, centered on the frame. Volumes with a
+    /// velocity are blurred by their motion; 0 shows them at one moment.
+    #[schemars(extend("unit" = "frames"), range(min = 0.0, max = 1.0))]
+    pub shutter: f64,
 }
 
 impl Default for TimeSettings {
     fn default() -> Self {
-        Self { fps: 24.0, frame: 1.0, range: None }
+        Self { fps: 24.0, frame: 1.0, range: None, shutter: 0.0 }
     }
 }
 
@@ -32,6 +37,11 @@ impl TimeSettings {
     /// The whole frame nearest to [`TimeSettings::frame`].
     pub fn whole_frame(&self) -> i32 {
         self.frame.round() as i32
+    }
+
+    /// Frames since [`TimeSettings::whole_frame`], whose files volumes show.
+    pub fn since_whole_frame(&self) -> f64 {
+        self.frame - f64::from(self.whole_frame())
     }
 
     /// Number of frames from the beginning of the time line, which is frame 1 unless `range` says

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::or_default::{is_default, or_default};
-use super::{Albedo, Axis, Color, EmissionSettings, Extent, MAX_FRAME};
+use super::{Albedo, Axis, Color, EmissionSettings, Extent, MAX_FRAME, VelocitySettings};
 
 const HALF_SIZE: Extent = Extent::Uniform(1.0);
 const RADIUS: f32 = 1.0;
@@ -70,6 +70,9 @@ pub struct VolumeSettings {
     /// The emission of the volume.
     #[serde(skip_serializing_if = "is_default")]
     pub emission: EmissionSettings,
+    /// The velocity that the volume moves by while the shutter is open.
+    #[serde(skip_serializing_if = "is_default")]
+    pub velocity: VelocitySettings,
 
     /// Half the size of the box that is filled, about the volume's own origin.
     #[schemars(extend("unit" = "length", "exclusiveMinimum" = 0.0, "default" = HALF_SIZE))]
