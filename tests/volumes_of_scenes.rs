@@ -5,6 +5,8 @@
 mod grids;
 #[path = "volumes_of_scenes/odd_files.rs"]
 mod odd_files;
+#[path = "volumes_of_scenes/velocities.rs"]
+mod velocities;
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU32, Ordering};

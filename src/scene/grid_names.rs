@@ -15,6 +15,9 @@ pub(super) const TEMPERATURE: &[&str] = &["temperature", "temp", "heat", "kelvin
 /// Names of grids that say how much flame there is.
 pub(super) const FLAME: &[&str] = &["flame", "flames", "fire", "burn", "flame_noise"];
 
+/// Names of grids of velocities, or in front of the names of their components.
+pub(super) const VELOCITY: &[&str] = &["vel", "v", "velocity"];
+
 /// Names of grids that simulations write beside those that are seen.
 const OTHER: &[&str] = &[
     "v",
@@ -116,6 +119,17 @@ pub(super) fn is_other(name: &str) -> bool {
     OTHER.contains(&&*name) || OTHER.contains(&&*words.join("_")) || words.iter().any(marks)
 }
 
+/// The velocity and the axis that a grid of that name holds a component of, if it does: `vel.x`,
+/// `v_y`, `velocityZ`.
+pub(super) fn velocity_component(name: &str) -> Option<(&'static str, usize)> {
+    let name = name.to_ascii_lowercase();
+    let axes = ['x', 'y', 'z'].into_iter().enumerate();
+    let (axis, vector) =
+        axes.into_iter().find_map(|(axis, letter)| Some((axis, name.strip_suffix(letter)?)))?;
+    let vector = vector.strip_suffix(['.', '_']).unwrap_or(vector);
+    VELOCITY.iter().find(|known| **known == vector).map(|known| (*known, axis))
+}
+
 /// Largest value of a grid above which its temperatures are in kelvin.
 pub(super) const KELVIN_FROM: f32 = 200.0;
 
@@ -156,6 +170,23 @@ mod tests {
                     haze unnamed density.001 fire_density dust x1";
         seen.split_whitespace().for_each(|name| assert!(!is_other(name), "{name}"));
         assert!(!is_other(""));
+    }
+
+    #[test]
+    fn components_of_velocities_are_told_by_their_endings() {
+        for (name, component) in [
+            ("vel.x", Some(("vel", 0))),
+            ("V_Y", Some(("v", 1))),
+            ("velz", Some(("vel", 2))),
+            ("vx", Some(("v", 0))),
+            ("velocityZ", Some(("velocity", 2))),
+            ("vel", None),
+            ("x", None),
+            ("old_vel.x", None),
+            ("vel..x", None),
+        ] {
+            assert_eq!(velocity_component(name), component, "{name}");
+        }
     }
 
     #[test]

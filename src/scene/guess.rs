@@ -7,6 +7,7 @@ mod framing;
 mod grid_columns;
 mod note;
 mod roles;
+mod velocity;
 
 use std::sync::Arc;
 
@@ -104,6 +105,10 @@ pub(super) fn guess(file: &Arc<VolumeFile>, progress: Progress) -> Result<Guess>
         notes.push(Note::new(About::Light, "nothing emits light, so a sun and a sky were added"));
     }
     settings.volume = one_volume_each(&first, &density, &emission, short_name(file.name()));
+    let velocities = velocity::velocities(file, &mut notes);
+    for (n, volume) in settings.volume.iter_mut().enumerate() {
+        volume.velocity = velocities.get(n).or(velocities.first()).cloned().unwrap_or_default();
+    }
     for grid in left_out.iter().filter(|grid| grid.is_missed) {
         let text = format!("\"{}\" is left out: {}", grid.name, grid.reason);
         notes.push(Note::new(About::LeftOut, text));

@@ -6,12 +6,15 @@ use std::collections::BTreeMap;
 use glam::{DVec3, IVec3};
 
 /// A grid of active voxels over a background of zero.
+#[derive(Clone)]
 pub struct Grid {
     pub name: &'static str,
     pub class: &'static str,
     /// Type of the values, as in `Tree_float_5_4_3`.
     pub kind: &'static str,
     pub voxels: Vec<(IVec3, f32)>,
+    /// What the components of a vector have for each unit of a voxel's value.
+    pub components: [f32; 3],
     pub voxel_size: f64,
     pub translation: DVec3,
     /// Taper and depth of a frustum over the box from -8 to 8, before scale and translation.
@@ -22,7 +25,8 @@ impl Grid {
     /// A fog volume of voxels 0.1 a side.
     pub fn fog(name: &'static str, voxels: Vec<(IVec3, f32)>) -> Self {
         let (class, kind) = ("fog volume", "float");
-        Self { name, class, kind, voxels, voxel_size: 0.1, translation: DVec3::ZERO, frustum: None }
+        let (components, translation) = ([1.0; 3], DVec3::ZERO);
+        Self { name, class, kind, voxels, components, voxel_size: 0.1, translation, frustum: None }
     }
 }
 
@@ -93,7 +97,7 @@ fn tree(grid: &Grid, bytes: &mut Bytes) {
         leaf.insert(place(voxel.to_array(), 3, 0), value);
     }
     bytes.u32(1);
-    bytes.value(grid.kind, 0.0);
+    bytes.value(grid, 0.0);
     bytes.u32(0);
     bytes.u32(tree.len() as u32);
     let mut values = Bytes(Vec::new());
@@ -106,7 +110,7 @@ fn tree(grid: &Grid, bytes: &mut Bytes) {
                 bytes.mask(512, voxels.keys().copied());
                 values.mask(512, voxels.keys().copied());
                 values.0.push(0);
-                voxels.values().for_each(|&value| values.value(grid.kind, value));
+                voxels.values().for_each(|&value| values.value(grid, value));
             }
         }
     }
@@ -135,10 +139,12 @@ impl Bytes {
         self.0.extend(mask);
     }
 
-    fn value(&mut self, kind: &str, value: f32) {
-        match kind {
+    fn value(&mut self, grid: &Grid, value: f32) {
+        match grid.kind {
             "half" => self.0.extend(half::f16::from_f32(value).to_le_bytes()),
-            "vec3s" => (0..3).for_each(|_| self.0.extend(value.to_le_bytes())),
+            "vec3s" => {
+                grid.components.iter().for_each(|c| self.0.extend((value * c).to_le_bytes()))
+            }
             _ => self.0.extend(value.to_le_bytes()),
         }
     }

@@ -147,6 +147,7 @@ fn stands(note: &Note, volume: &VolumeSettings, opened: &VolumeSettings) -> bool
             of(volume) == of(opened)
         }
         About::Placement => volume.translate == opened.translate,
+        About::Velocity => volume.velocity == opened.velocity,
         About::Light | About::Sequence | About::Framing | About::LeftOut => true,
     }
 }

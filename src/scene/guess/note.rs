@@ -9,6 +9,8 @@ pub enum About {
     Density,
     /// The grid that emits, and how.
     Emission,
+    /// The grids that a volume moves by.
+    Velocity,
     /// The light on a volume that emits none.
     Light,
     /// The frames of a sequence.
