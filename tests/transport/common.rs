@@ -468,6 +468,21 @@ pub fn measure_closely(scene: &Scene, most: u32) -> Estimate {
     measure_to(scene, most, CLOSELY, PathSample::beauty)
 }
 
+/// The mean over the whole film of what `of` takes from each path of all `scenes` together, by so
+/// many rounds in which each has as many samples in every accumulator.
+pub fn measure_in_turn(
+    scenes: &[Scene],
+    rounds: u32,
+    of: impl Fn(&PathSample) -> Rgb + Sync,
+) -> Estimate {
+    let frames: Vec<_> = scenes.iter().map(|scene| framed(scene, SIDE)).collect();
+    let turn = |s: u32| (s / ACCUMULATORS as u32) as usize % frames.len();
+    let samples = rounds * ACCUMULATORS as u32 * frames.len() as u32;
+    let mut rows = Rows::default();
+    rows.add(samples, |s| &frames[turn(s)], of);
+    rows.estimate()
+}
+
 /// The mean over the whole film of what `of` takes from each path, by so many paths as bring its
 /// standard error to `power`, relative to it, and about `most` at most.
 ///

@@ -15,6 +15,7 @@ mod light_selection;
 mod lights;
 mod many_fires;
 mod march;
+mod motion;
 mod noise;
 mod peers;
 mod profile;
