@@ -13,7 +13,7 @@ use crate::app::ui::notices::Notice;
 use crate::error::{Error, Result};
 use crate::render::picture::Extras;
 use crate::render::{Area, Layer, Picture, Resume, Session};
-use crate::scene::settings::FilmSettings;
+use crate::scene::settings::{FilmSettings, TimeSettings};
 use crate::scene::{Note, Settings, VolumeCache};
 use crate::transport::Scene;
 use crate::transport::prepare::SceneProbes;
@@ -455,6 +455,12 @@ pub fn same_shot(a: &Settings, b: &Settings) -> bool {
     a.camera == b.camera && same_matter(a, b)
 }
 
+/// Whether volumes look the same at two times. The pace of frames matters to what moves only.
+fn same_time(a: &TimeSettings, b: &TimeSettings) -> bool {
+    let moves = a.shutter > 0.0 || a.since_whole_frame() != 0.0;
+    a.frame == b.frame && a.shutter == b.shutter && (!moves || a.fps == b.fps)
+}
+
 /// Whether two settings are of the same things under the same light, wherever the camera is.
 pub fn same_matter(a: &Settings, b: &Settings) -> bool {
     let Settings {
@@ -468,7 +474,7 @@ pub fn same_matter(a: &Settings, b: &Settings) -> bool {
         surface,
         strategy: _,
     } = a;
-    time.whole_frame() == b.time.whole_frame()
+    same_time(time, &b.time)
         && *path == b.path
         && *environment == b.environment
         && *volume == b.volume

@@ -4,10 +4,11 @@ use egui::{DragValue, Ui, vec2};
 use glam::UVec2;
 
 use super::{Panel, section};
+use crate::app::document::Document;
 use crate::app::ui::theme::space;
-use crate::app::ui::widgets::{finite, is_reset, key_help, row, row_label, segments};
+use crate::app::ui::widgets::{Number, finite, is_reset, key_help, row, row_label, segments};
 use crate::scene::keys;
-use crate::scene::settings::FilmSettings;
+use crate::scene::settings::{FilmSettings, TimeSettings};
 
 /// Shows the section. `window` is the size that the film takes from the window, `largest` the
 /// most that the graphics card can show a side.
@@ -15,30 +16,13 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>, window: Option<UVec2>, largest: 
     section(ui, "Render", |ui| {
         let opened = &panel.editor.opened().settings;
         let reset = (opened.film.seed, opened.film.spp, opened.path.max_scatters);
-        let reset_size = opened.film.size;
+        let (reset_size, reset_shutter) = (opened.film.size, opened.time.shutter as f32);
         let document = &mut panel.editor.document;
-        let mut edit = None;
-        let choices = [
-            ("Window size", "Render at the size of the window."),
-            ("Fixed", "Render at the size given here, as on a render farm."),
-        ];
-        let chosen = usize::from(document.keep_size);
-        let clicked = row(ui, "Render size", &key_help("film.size"), |ui| {
-            segments(ui, &choices, Some(chosen))
-        });
-        if let Some(choice) = clicked.inner {
-            document.keep_size = choice == 1;
-            edit = Some("render size");
-        }
+        let mut edit = size_rows(ui, document, reset_size, (window, largest));
+        let moves = document.settings.volume.iter().any(|volume| volume.velocity.is_some());
+        let time = &mut document.settings.time;
         let film = &mut document.settings.film;
         let path = &mut document.settings.path;
-        if document.keep_size {
-            if fixed_size(ui, film, reset_size, largest) {
-                edit = Some("render size");
-            }
-        } else if let Some(size) = window {
-            row(ui, "", "", |ui| ui.weak(format!("{} × {} pixels", size.x, size.y)));
-        }
         let seed = Whole { name: "Seed", key: "film.seed", none: None, unit: "", reset: reset.0 };
         if seed.show(ui, &mut film.seed) {
             edit = Some("seed");
@@ -55,12 +39,9 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>, window: Option<UVec2>, largest: 
             film.spp = u32::try_from(spp).unwrap_or(u32::MAX);
             edit = Some("max samples");
         }
-        if panel.has_frames {
-            let help = key_help("film.animate_seed");
-            let noise = ui.checkbox(&mut film.animate_seed, "Noise changes with the frame");
-            if noise.on_hover_text(help).changed() {
-                edit = Some("noise of frames");
-            }
+        if panel.has_frames || moves {
+            let shown = [panel.has_frames, moves];
+            edit = edit.or(frame_rows(ui, shown, film, time, reset_shutter));
         }
         let bounces = Whole {
             name: "Max bounces",
@@ -78,6 +59,71 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>, window: Option<UVec2>, largest: 
             panel.editor.name_edit(name);
         }
     });
+}
+
+/// Shows whether the film has a size of its own, and that size. The name of the edit, if one was
+/// made.
+fn size_rows(
+    ui: &mut Ui,
+    document: &mut Document,
+    reset: [u32; 2],
+    (window, largest): (Option<UVec2>, u32),
+) -> Option<&'static str> {
+    let choices = [
+        ("Window size", "Render at the size of the window."),
+        ("Fixed", "Render at the size given here, as on a render farm."),
+    ];
+    let mut edit = None;
+    let chosen = usize::from(document.keep_size);
+    let clicked =
+        row(ui, "Render size", &key_help("film.size"), |ui| segments(ui, &choices, Some(chosen)));
+    if let Some(choice) = clicked.inner {
+        document.keep_size = choice == 1;
+        edit = Some("render size");
+    }
+    if document.keep_size {
+        if fixed_size(ui, &mut document.settings.film, reset, largest) {
+            edit = Some("render size");
+        }
+    } else if let Some(size) = window {
+        row(ui, "", "", |ui| ui.weak(format!("{} × {} pixels", size.x, size.y)));
+    }
+    edit
+}
+
+/// Shows the noise of frames and the shutter, where the scene has frames and where it moves. The name
+/// of the edit, if one was made.
+fn frame_rows(
+    ui: &mut Ui,
+    [has_frames, moves]: [bool; 2],
+    film: &mut FilmSettings,
+    time: &mut TimeSettings,
+    reset: f32,
+) -> Option<&'static str> {
+    let mut edit = None;
+    if has_frames {
+        let help = key_help("film.animate_seed");
+        let noise = ui.checkbox(&mut film.animate_seed, "Noise changes with the frame");
+        if noise.on_hover_text(help).changed() {
+            edit = Some("noise of frames");
+        }
+    }
+    if moves {
+        let number = Number {
+            name: "Shutter",
+            key: "time.shutter",
+            soft: 0.0..=1.0,
+            logarithmic: false,
+            unit: " frames",
+            reset,
+        };
+        let mut shutter = time.shutter as f32;
+        if number.show(ui, &mut shutter) {
+            time.shutter = f64::from(shutter).clamp(0.0, 1.0);
+            edit = Some("shutter");
+        }
+    }
+    edit
 }
 
 fn fixed_size(ui: &mut Ui, film: &mut FilmSettings, reset: [u32; 2], largest: u32) -> bool {

@@ -7,6 +7,7 @@ use glam::UVec2;
 
 use crate::app::document::Document;
 use crate::render::{Layer, Picture};
+use crate::scene::settings::TimeSettings;
 
 /// Most bytes that the pictures may take.
 const MOST_BYTES: usize = 2 << 30;
@@ -26,7 +27,8 @@ impl Take {
     /// The take of a document whose film has `size`, with `layer` beside the picture.
     pub fn new(document: &Document, size: UVec2, layer: Option<Layer>) -> Self {
         let mut document = document.clone();
-        document.settings.time = Default::default();
+        let time = &mut document.settings.time;
+        *time = TimeSettings { shutter: time.shutter, ..TimeSettings::default() };
         document.settings.film.spp = 0;
         document.tone = Default::default();
         Self { document, size, layer }
