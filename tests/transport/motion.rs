@@ -440,3 +440,35 @@ fn the_world_tells_how_long_it_is_seen() {
     assert_eq!(moment.open_seconds(), 0.0);
     assert_eq!(motion(&moment), Some(Shutter { frame: -0.01, open: 0.0 }));
 }
+
+/// An albedo of a grid moves with the density, whichever way it is read.
+#[test]
+fn the_albedo_moves_with_the_smoke() {
+    let mut albedo = ball(IVec3::ZERO, 6, 1.0);
+    albedo.iter_mut().for_each(|(voxel, value)| *value = rough(*voxel));
+    let components = [12.0, 4.0, -8.0];
+    let file = File::of(&[
+        Grid::fog("density", ball(IVec3::ZERO, 6, 1.0)),
+        Grid::fog("albedo", albedo),
+        Grid { kind: "vec3s", components, ..Grid::fog("vel", cube(12, |_| 1.0)) },
+    ]);
+    let scene = build(&format!(
+        "time.shutter = 1\n[[volume]]\nfile = '{}'\n{MOVING}\nalbedo = {{ grid = 'albedo' }}",
+        file.name
+    ));
+    let mut rng = PathRng::new(0, UVec2::ZERO, 0);
+    let mut seen = 0;
+    for _ in 0..1000 {
+        let mut random = || rng.uniform() - 0.5;
+        let (point, time) = (Vec3A::new(random(), random(), random()), random() / 24.0);
+        let mut medium = scene.world.along(Ray::new(point, Vec3A::X).at_time(time), 1e-4);
+        let Some(segment) = medium.next_segment() else { continue };
+        let Coefficients { mu_t, mu_s, .. } = medium.coefficients(segment.t0);
+        if mu_t.x > 0.0 {
+            let (albedo, _) = medium.scattering(segment.t0);
+            assert!((albedo - mu_s / mu_t).abs().max_element() < 1e-4, "{point} at {time}");
+            seen += 1;
+        }
+    }
+    assert!(seen > 500, "{seen}");
+}
