@@ -55,9 +55,9 @@ pub fn show(ui: &mut Ui, bar: &mut TimeBar<'_>) -> bool {
 fn play_buttons(ui: &mut Ui, bar: &mut TimeBar<'_>) {
     let play = if bar.time_line.is_playing() { "Stop" } else { "Play" };
     let buttons = [
-        ("⏮", 24.0, Command::PreviousFrame),
+        ("◀", 24.0, Command::PreviousFrame),
         (play, 52.0, Command::Play),
-        ("⏭", 24.0, Command::NextFrame),
+        ("▶", 24.0, Command::NextFrame),
     ];
     for (text, width, command) in buttons {
         let button = Button::new(text).min_size(vec2(width, 0.0));
