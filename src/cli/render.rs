@@ -48,8 +48,9 @@ pub struct Arguments {
     /// Samples per pixel.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
     spp: Option<u32>,
-    /// Stop this many seconds after the start of a frame, setting up included. Set-up is never cut short, and
-    /// every pixel gets one sample: where the time is too short for both, it ends after them.
+    /// Stop this many seconds after the start of a frame, setting up included. Set-up is never cut
+    /// short, and every pixel gets one sample: where the time is too short for both, it ends after
+    /// them.
     #[arg(long, value_name = "SECONDS", value_parser = parse_seconds)]
     time: Option<f64>,
     /// Number of threads; one a core if absent. The picture does not depend on it.

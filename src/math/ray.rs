@@ -21,7 +21,7 @@ impl Ray {
         Self { origin, direction, time: 0.0 }
     }
 
-    /// The same ray at another time.
+    /// A copy of the ray at another time.
     pub fn at_time(self, time: f32) -> Self {
         Self { time, ..self }
     }

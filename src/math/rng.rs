@@ -201,7 +201,8 @@ impl PathRng {
     }
 
     /// The number in [0, 1) for `slot` of the present vertex, in steps of 2⁻²⁴. Ask for it at most
-    /// once a vertex, or once a light sample: in the first vertices it would be the same number again.
+    /// once a vertex, or once a light sample: in the first vertices it would be the same number
+    /// again.
     #[inline]
     pub fn at(&mut self, slot: Slot) -> f32 {
         if self.vertex < self.stratified_vertices {

@@ -102,8 +102,8 @@ impl ProgressiveRender {
         (self.sampler, self.prepared) = (sampler, None);
     }
 
-    /// Does the next piece of work, unless `stop` says so earlier. A pilot pass, which would have to
-    /// begin anew, heeds `give_up` instead.
+    /// Does the next piece of work, unless `stop` says so earlier. A pilot pass, which would have
+    /// to begin anew, heeds `give_up` instead.
     pub fn step(
         &mut self,
         pool: &Pool,

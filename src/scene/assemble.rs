@@ -25,7 +25,7 @@ use surfaces::LightOrSurface;
 pub struct Assembled {
     /// The scene.
     pub scene: Scene,
-    /// What the frame lacks, volume by volume.
+    /// Missing files and grids of the frame, volume by volume.
     pub gaps: Vec<Gap>,
 }
 
@@ -37,8 +37,8 @@ pub fn assemble(settings: &Settings, cache: &VolumeCache, progress: Progress) ->
     assemble_frame(settings, cache, progress).map(|assembled| assembled.scene)
 }
 
-/// Builds the scene of the settings at their frame. Files and what was derived from them stay in `cache`, so that
-/// a scene of which only numbers have changed is built in a few milliseconds.
+/// Builds the scene of the settings at their frame. Files and what was derived from them stay in
+/// `cache`, so that a scene of which only numbers have changed is built in a few milliseconds.
 ///
 /// # Errors
 /// The settings are not valid, or a volume cannot be read; names the file, the key and the fix.

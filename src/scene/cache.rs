@@ -122,8 +122,8 @@ impl VolumeCache {
         Ok(file)
     }
 
-    /// A volume built before from the same settings, for the same time within its frame and from the
-    /// same state of the file.
+    /// A volume built before from the same settings, for the same time within its frame and from
+    /// the same state of the file.
     pub(super) fn built(
         &self,
         settings: &VolumeSettings,
@@ -139,8 +139,8 @@ impl VolumeCache {
         locked(&self.volumes).push(built);
     }
 
-    /// Lets go of every volume and file that the scene just built does not use, but for other frames
-    /// of its sequences that there is room for, those used last first.
+    /// Lets go of every volume and file that the scene just built does not use, but for other
+    /// frames of its sequences that there is room for, those used last first.
     pub(super) fn retain(&self, used: &[Arc<Volume>]) {
         let mut volumes = locked(&self.volumes);
         let is_used = |built: &BuiltVolume| used.iter().any(|v| Arc::ptr_eq(v, &built.volume));

@@ -68,7 +68,8 @@ impl GridDescription {
     }
 }
 
-/// Describes a volume file, or the largest file of a sequence, by its pattern or folder; what is read of it stays in `cache`.
+/// Describes a volume file, or the largest file of a sequence, by its pattern or folder; what is
+/// read of it stays in `cache`.
 ///
 /// # Errors
 /// The file cannot be read or a grid of it is damaged; names it.

@@ -8,7 +8,8 @@ use super::{Settings, embedded};
 use crate::error::{Progress, Result};
 use crate::files::{Fingerprint, path_of};
 
-/// The fingerprint of every file that the scene reads in its frame, each once, in the scene's order.
+/// The fingerprint of every file that the scene reads in its frame, each once, in the scene's
+/// order.
 ///
 /// # Errors
 /// A file cannot be read, or there is no such embedded volume; names it.

@@ -317,7 +317,8 @@ pub struct LightEstimate {
     pub radiance: Rgb,
 }
 
-/// Estimates the radiance that arrives at a receiver from lights at the time of the frame, by one light sample and without scores of probes. Excludes the environment and scattered light.
+/// Estimates the radiance that arrives at a receiver from lights at the time of the frame, by one
+/// light sample and without scores of probes. Excludes the environment and scattered light.
 pub fn estimate_light(
     scene: &Scene,
     emission_estimator: &EmissionEstimator,

@@ -126,8 +126,8 @@ impl Frame {
         Ok(PreparedFrame { frame: self, prepared })
     }
 
-    /// The frame with all probes, and the expected counts of first samples for all samples, no pilot
-    /// pass run.
+    /// The frame with all probes, and the expected counts of first samples for all samples, no
+    /// pilot pass run.
     ///
     /// # Errors
     /// [`Error::Cancelled`](crate::error::Error::Cancelled) where `progress` says so.

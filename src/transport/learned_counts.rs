@@ -230,7 +230,8 @@ fn unit_hash(hash: u32, of: [u32; 2], position: Vec3A, throughput: f32) -> f32 {
     (mixed >> 40) as f32 / (1_u64 << 24) as f32
 }
 
-/// Rounds an `expected` count up or down, by the random number of `slot`, so that its mean is right.
+/// Rounds an `expected` count up or down, by the random number of `slot`, so that its mean is
+/// right.
 #[inline]
 pub fn draw(expected: f32, slot: Slot, rng: &mut PathRng) -> u32 {
     let whole = expected.floor();

@@ -10,9 +10,9 @@
 //! | T(d) L_end | when the scattering walk gets there, or with an estimate of T | the same |
 //! | ∫ T μ_s L_s dt | the next vertex: light samples, then a direction | the same |
 //!
-//! With ratio tracking the scattering walk gathers no emission, and of the light at the end only the
-//! share that is not gathered by T, so that nothing counts twice. Every combination of toggles has
-//! the same mean. A marched ray stands for both walks, biased.
+//! With ratio tracking the scattering walk gathers no emission, and of the light at the end only
+//! the share that is not gathered by T, so that nothing counts twice. Every combination of toggles
+//! has the same mean. A marched ray stands for both walks, biased.
 //!
 //! A camera ray may have several guided flights, and a vertex may be left several times. Each
 //! branch but the last is followed to its end at once, then `State` is restored.

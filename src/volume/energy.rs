@@ -80,8 +80,8 @@ impl Energy {
     }
 
     /// The distribution over a volume whose `emission`, lum ε, is bounded by `majorants`; `None`
-    /// without emission. The emission is that at a point and at a fraction, 0 to 1, of the shutter's
-    /// time: the distribution is one for all times, and covers all that is lit at any.
+    /// without emission. The emission is that at a point and at a fraction, 0 to 1, of the
+    /// shutter's time: the distribution is one for all times, and covers all that is lit at any.
     ///
     /// A cell's density is the mean of its emission and a small share of its upper bound, zero
     /// only where the upper bound is.

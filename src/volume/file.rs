@@ -103,17 +103,15 @@ impl Directory {
     /// Reads a file's list of grids.
     ///
     /// # Errors
-    /// [`Error::Io`] if the file cannot be read,
-    /// [`Error::Invalid`] if it is damaged, no volume file or larger
-    /// than the free memory, [`Error::Unsupported`] for a version
-    /// that is not read, [`Error::Cancelled`].
+    /// [`Error::Io`] if the file cannot be read, [`Error::Invalid`] if it is damaged, no volume
+    /// file or larger than the free memory, [`Error::Unsupported`] for a version that is not read,
+    /// [`Error::Cancelled`].
     pub fn open(path: impl AsRef<Path>, progress: Progress) -> Result<Self> {
         let path = path.as_ref();
-        if !nvdb::is_nanovdb(&files::first_bytes(path)?) {
-            return vdb::Directory::open(path, progress).map(Self::of_openvdb);
+        match nvdb::is_nanovdb(&files::first_bytes(path)?) {
+            true => nvdb::Directory::open(path, progress).map(Self::of_nanovdb),
+            false => vdb::Directory::open(path, progress).map(Self::of_openvdb),
         }
-        let bytes = files::read_whole(path, nvdb::check_start, progress)?;
-        Self::parse(&path.display().to_string(), bytes, progress)
     }
 
     /// Reads the list of grids from bytes in memory; `file` names them in messages.

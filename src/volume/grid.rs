@@ -1,9 +1,9 @@
 //! Sparse voxel grids: storage, look-up and conservative ranges.
 //!
 //! Values are samples at integer positions of *index space*, trilinear in between. They lie in
-//! *blocks* of 8x8x8 voxels, the blocks in *nodes* of 16x16x16. Voxels that were not stored have the
-//! background's value. A *brick* is the cells that start in a block: it reads the first samples of
-//! the next blocks too, and has its range of values cached.
+//! *blocks* of 8x8x8 voxels, the blocks in *nodes* of 16x16x16. Voxels that were not stored have
+//! the background's value. A *brick* is the cells that start in a block: it reads the first samples
+//! of the next blocks too, and has its range of values cached.
 //!
 //! Blocks are stored as half floats where every value is exactly one and as floats elsewhere, bit
 //! for bit; in grids of up to 32 MiB they are padded with the first samples of the next blocks,

@@ -14,8 +14,8 @@ use super::{
 use crate::error::{Progress, Result, report};
 use crate::math::{Aabb, Rgb, luminance};
 
-/// The properties of a medium at the time of its grids. Coefficients are per unit of *world* length,
-/// whatever the volume's placement.
+/// The properties of a medium at the time of its grids. Coefficients are per unit of *world*
+/// length, whatever the volume's placement.
 #[derive(Clone, Debug)]
 pub struct MediumProperties {
     /// The density field; μ_t = `density_scale` · value.
@@ -224,8 +224,8 @@ impl Volume {
         self.motion.as_ref()
     }
 
-    /// The point of the volume's space that has moved to `local` at a time, in seconds after that of
-    /// the frame; `None` where there is nothing. `local` itself where nothing moves.
+    /// The point of the volume's space that has moved to `local` at a time, in seconds after that
+    /// of the frame; `None` where there is nothing. `local` itself where nothing moves.
     #[inline]
     pub fn source(&self, local: Vec3A, time: f32) -> Option<Vec3A> {
         match &self.motion {
@@ -255,9 +255,10 @@ impl Volume {
     }
 }
 
-/// Sums the emission at the cells' centers along every row of cells of each axis, at the time of the
-/// frame, and keeps the largest sum. It only sets the unit of the boost amount, so a coarse sum will do; but sparks
-/// between the centers count too, half a cell long, so that the unit does not vanish.
+/// Sums the emission at the cells' centers along every row of cells of each axis, at the time of
+/// the frame, and keeps the largest sum. It only sets the unit of the boost amount, so a coarse sum
+/// will do; but sparks between the centers count too, half a cell long, so that the unit does not
+/// vanish.
 fn probe_chords(
     cells: &MajorantGrid,
     emission: &dyn Fn(Vec3A) -> f32,

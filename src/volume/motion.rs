@@ -103,8 +103,8 @@ impl Motion {
         self.shutter
     }
 
-    /// The point that has moved to `local` at a time, in seconds after that of the frame; `None` where
-    /// there is nothing.
+    /// The point that has moved to `local` at a time, in seconds after that of the frame; `None`
+    /// where there is nothing.
     // In line it would crowd the loops of volumes that stand still.
     #[inline(never)]
     pub(super) fn source(&self, local: Vec3A, time: f32) -> Option<Vec3A> {

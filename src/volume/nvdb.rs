@@ -22,10 +22,10 @@
 //! the layout stays. Codec 0 stores grids as they are, codec 1 as one zlib stream after its length,
 //! codec 2 in pieces of 1 GiB, each a Blosc container after its length. Offsets count from the node
 //! that holds them, those of the tree from the tree. Values and nodes are aligned: fields to their
-//! own size, tables and nodes to 32 bytes (`nvdb/layout.rs`). Quantized leaves (Fp4, Fp8, Fp16, FpN) hold
-//! a minimum and a quantum before their codes of 4, 8, 16 or, as the top bits of the leaf's flags
-//! say, 1 to 16 bits; value = minimum + code x quantum. Names of 256 bytes and more lie in the blind
-//! data of class 3, and whole in the segment.
+//! own size, tables and nodes to 32 bytes (`nvdb/layout.rs`). Quantized leaves (Fp4, Fp8, Fp16,
+//! FpN) hold a minimum and a quantum before their codes of 4, 8, 16 or, as the top bits of the
+//! leaf's flags say, 1 to 16 bits; value = minimum + code x quantum. Names of 256 bytes and more
+//! lie in the blind data of class 3, and whole in the segment.
 //!
 //! [`Directory`] lists what a file holds without touching a voxel and loads single grids. Grids of
 //! float, double, vec3f and vec3d values and the quantized ones are loaded; others are listed with
@@ -44,4 +44,4 @@ mod tree;
 pub use directory::Directory;
 pub use entry::GridInfo;
 pub use segments::Version;
-pub(super) use segments::{check_start, is_nanovdb};
+pub(super) use segments::is_nanovdb;

@@ -10,8 +10,9 @@
 //!
 //! [`Directory`] lists what a file holds without touching a voxel and loads single grids; [`read`]
 //! loads everything. Half, float and double grids of the usual 5-4-3 tree, and vec3h, vec3s and
-//! vec3d ones, with an affine or a frustum transform are loaded, stored in full or as half floats, compressed by ZIP, Blosc, active masks or not at
-//! all. Other grids are listed with the reason why they are not loaded.
+//! vec3d ones, with an affine or a frustum transform are loaded, stored in full or as half floats,
+//! compressed by ZIP, Blosc, active masks or not at all. Other grids are listed with the reason why
+//! they are not loaded.
 
 mod compression;
 mod directory;

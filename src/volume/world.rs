@@ -52,8 +52,8 @@ impl World {
         Self { instances, bounded, bounded_indices, unbounded, emissive, open }
     }
 
-    /// Seconds that the shutter is open, half of them before the time of the frame: the bounds of all
-    /// volumes hold for so long. 0 where nothing moves, or all is seen at one moment.
+    /// Seconds that the shutter is open, half of them before the time of the frame: the bounds of
+    /// all volumes hold for so long. 0 where nothing moves, or all is seen at one moment.
     pub fn open_seconds(&self) -> f32 {
         self.open
     }

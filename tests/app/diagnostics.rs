@@ -55,8 +55,8 @@ fn the_time_is_told_by_what_it_is_spent_on() {
     assert!(window.has("first, in smoke"), "the bounces are not told");
 }
 
-/// The ball emits ε = μ_a · le with lum ε = 1.2 · (0.2126 · 2 + 0.7152 · 0.7 + 0.0722 · 0.2) = 1.128
-/// over 4π/3: a power of 4.726, in one cell.
+/// The ball emits ε = μ_a · le with lum ε = 1.2 · (0.2126 · 2 + 0.7152 · 0.7 + 0.0722 · 0.2) =
+/// 1.128 over 4π/3: a power of 4.726, in one cell.
 #[test]
 fn the_energy_of_cells_has_a_legend_with_numbers() {
     let Some(mut window) = Window::open(BALL) else { return };

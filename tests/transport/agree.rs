@@ -34,9 +34,9 @@ fn every_combination_gives_one_picture() {
 /// that bring more variance the more there are, show in the last; that the limit itself is right is
 /// what known values are for.
 ///
-/// Over seven seeds, with a reference of 4096 and 1024 pixels, the ratio to the expectation was 0.97
-/// to 1.05, with a deviation of 0.03, which makes 0.06 for these 256; the limits are five of them
-/// away.
+/// Over seven seeds, with a reference of 4096 and 1024 pixels, the ratio to the expectation was
+/// 0.97 to 1.05, with a deviation of 0.03, which makes 0.06 for these 256; the limits are five of
+/// them away.
 #[test]
 fn the_error_falls_as_one_over_n() {
     const SAMPLES: u32 = 1024;

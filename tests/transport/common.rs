@@ -1,10 +1,10 @@
 //! Scenes as text, estimates with their standard errors, and the z-tests that judge them.
 //!
 //! Every comparison asks for |z| <= 5, so that one false alarm has probability 5.7e-7 and a family
-//! of M comparisons at most M times that; no family here has more than a thousand. An error of 3.7 %
-//! of the expected value is found in any of them with a probability of 99 %, unless a test says why
-//! not, by a standard error of 0.5 % or by a test in steps (`sequential`) that lets no more through.
-//! What many settings have in common is held much closer (`verdicts`).
+//! of M comparisons at most M times that; no family here has more than a thousand. An error of 3.7
+//! % of the expected value is found in any of them with a probability of 99 %, unless a test says
+//! why not, by a standard error of 0.5 % or by a test in steps (`sequential`) that lets no more
+//! through. What many settings have in common is held much closer (`verdicts`).
 
 pub mod sequential;
 mod verdicts;
@@ -486,8 +486,8 @@ pub fn measure_in_turn(
 /// The mean over the whole film of what `of` takes from each path, by so many paths as bring its
 /// standard error to `power`, relative to it, and about `most` at most.
 ///
-/// It goes on until the samples so far have brought the error. To stop by their variance moves their
-/// mean by next to nothing, there being thousands of pixels.
+/// It goes on until the samples so far have brought the error. To stop by their variance moves
+/// their mean by next to nothing, there being thousands of pixels.
 pub fn measure_to(
     scene: &Scene,
     most: u32,

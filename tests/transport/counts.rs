@@ -1,5 +1,5 @@
-//! Expected counts of light samples, emission walks and ways to gather the end of a ray: the picture
-//! is the same with any of them. Where a toggle is said to change nothing, so is every bit.
+//! Expected counts of light samples, emission walks and ways to gather the end of a ray: the
+//! picture is the same with any of them. Where a toggle is said to change nothing, so is every bit.
 
 use std::sync::Arc;
 

@@ -199,8 +199,8 @@ fn hidden_lights_are_rarely_chosen() {
 }
 
 /// Mist, surfaces inside and outside of it, with and without looks at fire, by lines and by points.
-/// Points are looked at from outside of the fires alone, which neither scatter nor stand in the mist
-/// then: one point of their glow has infinite variance from within.
+/// Points are looked at from outside of the fires alone, which neither scatter nor stand in the
+/// mist then: one point of their glow has infinite variance from within.
 #[test]
 fn whichever_way_lights_are_chosen_there_is_one_picture() {
     let scene = build(&walls());

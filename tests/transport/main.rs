@@ -1,5 +1,5 @@
-//! Light in volumes comes out as it must: against known values, other ways to the same value, and what
-//! must not change a picture. One binary, so that long tests run side by side.
+//! Light in volumes comes out as it must: against known values, other ways to the same value, and
+//! what must not change a picture. One binary, so that long tests run side by side.
 
 mod agree;
 mod caustics;

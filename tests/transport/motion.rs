@@ -18,9 +18,9 @@ use crate::common::{
 };
 use grids::{Grid, ball, file};
 
-/// Largest standard error of the mean of stills, and of differences from it, relative to it: deviations of
-/// 11 % are found with a probability of 99 % in a single setting, and smaller ones in all of them
-/// together.
+/// Largest standard error of the mean of stills, and of differences from it, relative to it:
+/// deviations of 11 % are found with a probability of 99 % in a single setting, and smaller ones in
+/// all of them together.
 const CLOSELY: f64 = 0.008;
 const REFERENCED: f64 = 0.015;
 
@@ -86,8 +86,8 @@ fn strategies() -> Vec<Strategy> {
     all
 }
 
-/// Holds what `of` takes from the blurred picture under every strategy against the mean of stills by
-/// so many rounds of samples.
+/// Holds what `of` takes from the blurred picture under every strategy against the mean of stills
+/// by so many rounds of samples.
 fn hold_against_stills(blurred: &Scene, stills: &[Scene], rounds: u32, of: fn(&PathSample) -> Rgb) {
     let full = Preset::Full.strategy();
     let stills: Vec<Scene> = stills.iter().map(|still| with_strategy(still, full)).collect();
@@ -107,9 +107,9 @@ fn scattered(sample: &PathSample) -> Rgb {
     sample.direct + sample.indirect
 }
 
-/// Smoke that is always in the shadow of a black cloud above it and always lit by the same flame beside
-/// it, seen from below, while all three move by far more than their sizes: whatever part of a path
-/// saw another moment would find the sun there, and the flame elsewhere.
+/// Smoke that is always in the shadow of a black cloud above it and always lit by the same flame
+/// beside it, seen from below, while all three move by far more than their sizes: whatever part of
+/// a path saw another moment would find the sun there, and the flame elsewhere.
 #[test]
 fn a_uniform_velocity_blurs_as_translated_stills() {
     let mut smoke = ball(IVec3::ZERO, 3, 1.0);
@@ -348,8 +348,8 @@ fn without_a_shutter_the_picture_is_the_still() {
     }
 }
 
-/// All of a path is at one time, which is uniform over the shutter and the same whenever the path is
-/// walked again.
+/// All of a path is at one time, which is uniform over the shutter and the same whenever the path
+/// is walked again.
 #[test]
 fn every_path_has_a_time_of_its_own() {
     const BINS: usize = 16;

@@ -75,8 +75,8 @@ fn variances(frames: &[PreparedFrame], samples: u32, batch: u32) -> Vec<[f64; 2]
         .collect()
 }
 
-/// The two variances agree, as tested in steps at the power of a fixed test with a standard error of
-/// 3 %: the next pixels are looked at until that is clear. Evenly spread or independent, equal
+/// The two variances agree, as tested in steps at the power of a fixed test with a standard error
+/// of 3 %: the next pixels are looked at until that is clear. Evenly spread or independent, equal
 /// accumulators or not.
 #[test]
 fn accumulators_tell_the_noise_between_seeds() {

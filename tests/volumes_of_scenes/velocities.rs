@@ -109,8 +109,8 @@ fn wrong_grids_are_refused_where_they_are_needed() {
     }
 }
 
-/// A volume is built anew for another shutter, velocity or fraction of a frame, and for nothing else;
-/// without a shutter the velocity has no part in it.
+/// A volume is built anew for another shutter, velocity or fraction of a frame, and for nothing
+/// else; without a shutter the velocity has no part in it.
 #[test]
 fn volumes_are_built_for_their_motion() {
     let folder = folder(&[("a.vdb", vec![smoke(), vector("vel")])]);

@@ -199,8 +199,8 @@ impl Editor {
     }
 
     /// Ends a frame of the window: records what changed. Whether anything did. The frame of the
-    /// scene is where one looks, not what one makes: going to another is no edit. A tracker that the edit leaves
-    /// without what it needs gives way to the plain one.
+    /// scene is where one looks, not what one makes: going to another is no edit. A tracker that
+    /// the edit leaves without what it needs gives way to the plain one.
     pub fn end_frame(&mut self) -> bool {
         let is_elsewhere = self.document.settings.time.frame != self.before.settings.time.frame;
         self.before.settings.time.frame = self.document.settings.time.frame;

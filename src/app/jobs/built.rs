@@ -19,7 +19,7 @@ pub struct BuiltScene {
     pub settings: Settings,
     /// The guesses made for a bare volume.
     pub notes: Vec<Note>,
-    /// What the frame of the scene lacks.
+    /// Missing files and grids of the scene's frame.
     pub gaps: Vec<Gap>,
     /// Ready to sample.
     pub scene: Arc<Scene>,

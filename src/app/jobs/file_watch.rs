@@ -79,8 +79,8 @@ impl FileWatch {
         Ok(Self { shared, thread: Some(thread) })
     }
 
-    /// Watches these files and folders, as they are now, in place of others. Those that were watched
-    /// already are compared with what they were.
+    /// Watches these files and folders, as they are now, in place of others. Those that were
+    /// watched already are compared with what they were.
     pub fn watch(&self, paths: Vec<PathBuf>) {
         let mut state = self.shared.state();
         let mut known = std::mem::take(&mut state.watched);

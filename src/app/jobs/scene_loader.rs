@@ -205,8 +205,8 @@ fn run(
     Ok((BuiltScene { settings, notes, gaps, scene }, reopened))
 }
 
-/// Reads the frames around that of `settings` while nothing else is asked for and there is room. One
-/// that cannot be read is reported when the scene goes to it.
+/// Reads the frames around that of `settings` while nothing else is asked for and there is room.
+/// One that cannot be read is reported when the scene goes to it.
 fn prefetch(settings: &Settings, cache: &VolumeCache, progress: Progress<'_>) {
     let Some([first, last]) = time_range(&settings.volume, &settings.time) else { return };
     let frame = settings.time.whole_frame();

@@ -91,8 +91,8 @@ fn size_rows(
     edit
 }
 
-/// Shows the noise of frames and the shutter, where the scene has frames and where it moves. The name
-/// of the edit, if one was made.
+/// Shows the noise of frames and the shutter, where the scene has frames and where it moves. The
+/// name of the edit, if one was made.
 fn frame_rows(
     ui: &mut Ui,
     [has_frames, moves]: [bool; 2],

@@ -8,7 +8,7 @@ use crate::scene::keys;
 use crate::scene::sequence::Pattern;
 use crate::scene::settings::{MAX_FRAME, Outside, VolumeSettings};
 
-/// What there is outside of the frames on the disk, in the order of the buttons.
+/// Choices of `outside`, in the order of the buttons.
 const OUTSIDE: [(Outside, &str); 3] =
     [(Outside::Hold, "Hold"), (Outside::Loop, "Loop"), (Outside::None, "None")];
 

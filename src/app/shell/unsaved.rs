@@ -58,8 +58,8 @@ impl UnsavedChanges {
 
     /// Whether `settings` have changes that no file has. Strategies are tried on and off all the
     /// time and change no picture, and a film that follows the window has no size of its own.
-    /// Moving the camera in an embedded scene, or in a bare volume, is no change to save yet, nor is
-    /// another frame of the time line.
+    /// Moving the camera in an embedded scene, or in a bare volume, is no change to save yet, nor
+    /// is another frame of the time line.
     pub(super) fn differs_from(&self, settings: &Settings, keep_size: bool) -> bool {
         let mut film = self.saved.film;
         if !keep_size {

@@ -26,7 +26,7 @@ pub struct TimeBar<'a> {
     /// Memory of the volumes of all frames that are kept, and how much frames may take that are not
     /// shown, in bytes.
     pub volumes: [usize; 2],
-    /// What the present frame lacks, in words.
+    /// Missing files and grids of the present frame, in words.
     pub gaps: Vec<String>,
     /// Commands that buttons ask for.
     pub commands: &'a mut Vec<Command>,

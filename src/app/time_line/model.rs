@@ -27,7 +27,7 @@ pub struct TimeLine {
     playhead: Option<i32>,
 }
 
-/// What the playback asks for.
+/// A request of the playback.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Turn {
     /// Look again after so much time.

@@ -38,8 +38,8 @@ impl Playback {
         Self { frame, since: None }
     }
 
-    /// What to do at `now`, where `is_there` says which frames have a picture. A frame is shown for
-    /// its time, and those that came too late are passed over; none is passed over that has no
+    /// The step due at `now`, where `is_there` says which frames have a picture. A frame is shown
+    /// for its time, and those that came too late are passed over; none is passed over that has no
     /// picture.
     pub(super) fn tick(
         &mut self,

@@ -17,8 +17,8 @@ const TO_FACE: f64 = 0.5;
 /// Largest difference, in voxels, of two places that are the same but for rounding.
 const SAME: f64 = 1e-3;
 
-/// The time within its frame that the look of a volume depends on; `None` for one that stands still,
-/// since it has no velocity or is seen at the time of its grids alone.
+/// The time within its frame that the look of a volume depends on; `None` for one that stands
+/// still, since it has no velocity or is seen at the time of its grids alone.
 pub(super) fn time_in_motion(
     settings: &VolumeSettings,
     time: &TimeSettings,

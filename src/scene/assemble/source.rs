@@ -125,7 +125,8 @@ impl<'a> GridSource<'a> {
         Ok(Some((grid.values, local_from_grid.inverse(), grid.taper)))
     }
 
-    /// Transform from the index space of a grid, of a frustum its spread space, to the volume's own.
+    /// Transform from the index space of a grid, of a frustum its spread space, to the volume's
+    /// own.
     pub(super) fn local_from_grid(&mut self, grid: &PlacedGrid) -> DAffine3 {
         let file_from_local = *self.file_from_local.get_or_insert(grid.world_from_index);
         file_from_local.inverse() * grid.world_from_index

@@ -1,4 +1,4 @@
-//! What of a volume the camera looks at, and where it stands.
+//! The part of a volume that the camera frames, and the place of the volume in the world.
 
 use super::candidate::Candidate;
 use super::note::{About, Note};

@@ -30,11 +30,11 @@ pub struct Frames<'a> {
     pub files: &'a FramesOnDisk,
     /// First and last frame; `None`: those of the files.
     pub range: Option<[i32; 2]>,
-    /// What is shown before the first frame and after the last.
+    /// Content of the frames before the first one and after the last.
     pub outside: Outside,
 }
 
-/// What a frame shows.
+/// Content of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Shown<'a> {
     /// A file.
@@ -129,7 +129,7 @@ impl FramesOnDisk {
 }
 
 impl<'a> Frames<'a> {
-    /// What `frame` of the files shows.
+    /// Content of `frame`, counted as the files are.
     pub fn at(&self, frame: i32) -> Shown<'a> {
         let [first, last] = self.range.unwrap_or_else(|| self.files.range());
         let is_inside = (first..=last).contains(&frame);

@@ -1,4 +1,5 @@
-//! A numbered set of volume files that is opened by a pattern, by one of its files or by its folder.
+//! A numbered set of volume files that is opened by a pattern, by one of its files or by its
+//! folder.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -70,7 +70,7 @@ impl Pattern {
         self.folder.join(format!("{before}{number:0width$}{after}"))
     }
 
-    /// The same pattern with numbers of another least width.
+    /// A copy of the pattern with another least number of digits.
     pub fn with_width(&self, width: usize) -> Self {
         Self { width, ..self.clone() }
     }

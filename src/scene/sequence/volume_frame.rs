@@ -14,7 +14,7 @@ pub struct VolumeFrame {
     pub file: Option<String>,
     /// Name of the largest file of the sequence, if the volume is one.
     pub fullest: Option<String>,
-    /// What the frame lacks.
+    /// The missing file of the frame, if it is missing.
     pub gap: Option<Gap>,
 }
 

@@ -118,7 +118,7 @@ pub struct VolumeSettings {
     pub seed: Option<u32>,
 }
 
-/// What a sequence of files shows before its first frame and after its last.
+/// Content of the frames before the first file of a sequence and after its last.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Outside {

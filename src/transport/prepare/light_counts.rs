@@ -10,9 +10,10 @@
 //! Below one sample a second moment is what a count adds to the variance, since roulette that
 //! expects n of one sample has the variance of that sample and (1/n − 1) of its second moment. The
 //! counts with the least variance times cost are those that are good in most parts of the film: the
-//! pixels fall into groups, and the logarithm is averaged over them, so that one bright path decides
-//! nothing (after Rath et al. 2022, *EARS: Efficiency-Aware Russian Roulette and Splitting*, and
-//! Meyer et al. 2024, *MARS: Multi-sample Allocation through Russian roulette and Splitting*).
+//! pixels fall into groups, and the logarithm is averaged over them, so that one bright path
+//! decides nothing (after Rath et al. 2022, *EARS: Efficiency-Aware Russian Roulette and
+//! Splitting*, and Meyer et al. 2024, *MARS: Multi-sample Allocation through Russian roulette and
+//! Splitting*).
 
 use glam::UVec2;
 
@@ -40,8 +41,8 @@ const FEWEST: f32 = 0.25;
 const LEAST_LEFT: f64 = 0.1;
 /// Factor by which a change of a count must lower variance times cost.
 const GAIN: f64 = 0.95;
-/// The same at first vertices: samples that are spread evenly there have much less variance than the
-/// independent ones of the pilot, so that rounding adds more.
+/// The same at first vertices: samples that are spread evenly there have much less variance than
+/// the independent ones of the pilot, so that rounding adds more.
 const GAIN_OF_FIRST: f64 = 0.8;
 /// Largest factor of a contribution by other counts: none of them would find it.
 const LARGEST: f64 = 1e6;

@@ -15,8 +15,8 @@ use crate::{
 /// Fixed seed, which with the sample numbers used here no picture is likely to have.
 const SEED: u64 = 0x6f70_7469_6d61_6c21;
 
-/// Cost that one set of pilot paths is worth for each pixel of the film, in tracking steps of one of
-/// two paths at each pilot pixel: about as much as an eighth of a sample.
+/// Cost that one set of pilot paths is worth for each pixel of the film, in tracking steps of one
+/// of two paths at each pilot pixel: about as much as an eighth of a sample.
 const BUDGET_PER_PIXEL: f64 = 16.0;
 /// Least cost of a set of pilot paths.
 pub(in crate::transport) const LEAST_BUDGET: f64 = 16_384.0;

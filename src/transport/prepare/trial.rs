@@ -82,7 +82,8 @@ pub(super) struct Trial {
 }
 
 impl Trial {
-    /// Measures the counts of `context` with every choice of ray ends, by paths of the cost `budget`.
+    /// Measures the counts of `context` with every choice of ray ends, by paths of the cost
+    /// `budget`.
     pub(super) fn new(
         film: PilotFilm<'_>,
         context: PathContext<'_>,

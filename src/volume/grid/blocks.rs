@@ -332,7 +332,8 @@ mod tests {
     }
 
     impl Field {
-        /// Each block is drawn from `kinds`: 0 is background, 1 a constant, 2 half floats, 3 floats.
+        /// Each block is drawn from `kinds`: 0 is background, 1 a constant, 2 half floats, 3
+        /// floats.
         fn new(kinds: std::ops::Range<u32>, background: f32, seed: u64) -> Self {
             let mut rng = Xoshiro256PlusPlus::seed_from_u64(seed);
             let blocks: Vec<u32> = (0..125).map(|_| rng.random_range(kinds.clone())).collect();

@@ -1,4 +1,4 @@
-//! What a grid's values stand for.
+//! Class of a grid: the meaning of its values.
 
 use std::fmt;
 

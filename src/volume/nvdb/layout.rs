@@ -51,9 +51,9 @@ pub(super) const NODE_MASKS: usize = 32;
 pub(super) const LEAF_MASK: usize = 16;
 /// The flags of a leaf.
 pub(super) const LEAF_FLAGS: usize = 15;
-/// What comes before the statistics of a root: box and number of entries.
+/// Bytes before the statistics of a root: box and number of entries.
 const ROOT_BASE: usize = 28;
-/// What comes before the value of a root's entry: key, child and state.
+/// Bytes before the value of a root's entry: key, child and state.
 const ENTRY_BASE: usize = 20;
 const ALIGNMENT: usize = 32;
 

@@ -56,7 +56,7 @@ pub(in crate::volume) fn is_nanovdb(start: &[u8]) -> bool {
 
 /// Whether a file that starts with these bytes may be a NanoVDB file of a version that is read; the
 /// reason if it is none.
-pub(in crate::volume) fn check_start(start: &[u8]) -> Result<(), String> {
+pub(super) fn check_start(start: &[u8]) -> Result<(), String> {
     match Arrangement::of(Bytes(start)).and_then(|arrangement| arrangement.version(Bytes(start))) {
         Ok(_) | Err(Error::Cancelled) => Ok(()),
         Err(Error::Invalid { reason, .. } | Error::Unsupported { reason, .. }) => Err(reason),

@@ -57,7 +57,7 @@ struct Place<'a> {
     bytes: &'a [u8],
 }
 
-/// What a scan gathers.
+/// Results of a scan.
 struct Scan<'a, 'p, V> {
     grid: Bytes<'a>,
     layout: ValueLayout,

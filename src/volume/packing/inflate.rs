@@ -9,7 +9,7 @@ const PIECE: usize = 4 << 20;
 #[derive(Default)]
 pub(in crate::volume) struct Inflate(Option<Decompress>);
 
-/// What became of a stream that took long.
+/// Outcome of a stream that took long.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in crate::volume) enum Outcome {
     /// It is sound and filled its target exactly.

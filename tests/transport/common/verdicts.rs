@@ -1,8 +1,8 @@
 //! Comparisons gathered: each on its own, and all that share a choice together.
 //!
-//! A single setting is held to an error of a few per cent (see [`super::sequential`]). What is wrong
-//! with a technique is wrong in every setting that has it, so that the settings with one choice, and
-//! those with a pair of choices, are pooled as well: with deviations dᵢ and information
+//! A single setting is held to an error of a few per cent (see [`super::sequential`]). What is
+//! wrong with a technique is wrong in every setting that has it, so that the settings with one
+//! choice, and those with a pair of choices, are pooled as well: with deviations dᵢ and information
 //! Iᵢ = 1/sᵢ², z = Σ Iᵢ dᵢ / √(Σ Iᵢ). Each Iᵢ dᵢ is a score, a martingale in the samples, so that
 //! its variance is the mean of Iᵢ however the samples' number was decided (Wald's second identity).
 //! Sixteen settings with half of them sharing a choice find errors of it that are a third as large.
