@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use flambeau::scene::settings::{
-    Albedo, Color, EmissionMode, Extent, GridKey, LightKind, LightSettings, MaterialKind,
-    MaterialSettings, Normalize, RampKind, SurfaceSettings, SurfaceShape, VelocitySettings,
-    VelocityUnit, VolumeSettings, VolumeShape,
+    Albedo, CameraKey, CameraSettings, Color, EmissionMode, Extent, GridKey, LightKind,
+    LightSettings, MaterialKind, MaterialSettings, Normalize, RampKind, SurfaceSettings,
+    SurfaceShape, VelocitySettings, VelocityUnit, VolumeSettings, VolumeShape,
 };
 use flambeau::scene::{self, Overrides, Settings, keys};
 use flambeau::transport::strategy::{BoostMode, Preset};
@@ -156,6 +156,20 @@ const MALFORMED: &[(&str, &[&str])] = &[
     ("[camera]\nposition = [1, 'a', 2]", &["camera.position.1:", "expected number"]),
     ("[camera]\nposition = [0, 0, 0]", &["camera.target:", "same point"]),
     ("[camera]\nup = [0, 3, 0]", &["camera.up:", "along the view"]),
+    (
+        "[camera]\nfov_x = 40\nfocal_length = 35",
+        &["camera.focal_length:", "fov_x", "leave one out"],
+    ),
+    ("[camera]\nfocal_length = 'long'", &["camera.focal_length:", "millimeters"]),
+    ("[camera]\nfocal_length = 0", &["camera.focal_length:", "above 0"]),
+    ("[camera]\nfocus_distance = 0", &["camera.focus_distance:", "> 0"]),
+    ("[camera]\nkey = 1", &["camera.key:", "[[camera.key]]"]),
+    ("[[camera.key]]\nframe = 2\n[[camera.key]]\nframe = 2", &["camera.key:", "ascend"]),
+    (
+        "[[camera.key]]\nframe = 2.5\nposition = [1, 2, 3]\ntarget = [1, 2, 3]",
+        &["camera.target:", "same point", "frame 2.5"],
+    ),
+    ("[[camera.key]]\nfocal_length = 5\nfov_x = 9", &["camera.key.0.focal_length:", "leave one"]),
     ("[film]\nspp = 1.5", &["film.spp:", "expected integer"]),
     ("[film]\nspp = 4294967296", &["film.spp:", "4294967296 is out of range", "0..4294967295"]),
     ("[film]\nsize = [0, 9]", &["film.size.0:", "1..16384"]),
@@ -274,6 +288,20 @@ fn malformed_scenes_are_refused_by_file_key_and_mend() {
             assert!(message.contains(part), "{text}\n{message}\nlacks {part}");
         }
     }
+}
+
+/// A focal length is a field of view on the sensor that it is given for, in the file as on the
+/// command line.
+#[test]
+fn focal_lengths_are_fields_of_view() {
+    let fov_x = |text: &str, more: &[&str]| set(text, more).unwrap().camera.fov_x;
+    let fifty = fov_x("camera.focal_length = 50", &[]);
+    assert!((fifty - 39.5978).abs() < 1e-3, "{fifty}");
+    let super_35 = fov_x("[camera]\nfocal_length = 50\nsensor_width = 24.9", &[]);
+    assert!((super_35 - 27.96).abs() < 0.01, "{super_35}");
+    assert_eq!(fov_x("camera.fov_x = 20", &["camera.focal_length=50"]), fifty);
+    let keyed = set("[[camera.key]]\nframe = 4\nfocal_length = 50", &["time.frame=9"]).unwrap();
+    assert_eq!(keyed.present_camera().fov_x, fifty);
 }
 
 #[test]
@@ -426,9 +454,7 @@ fn saving_and_loading_loses_nothing() {
 }
 
 fn any_settings(rng: &mut impl Rng, home: &Path) -> Settings {
-    let mut settings = Settings::default();
-    settings.camera.position = vector(rng);
-    settings.camera.fov_x = rng.random_range(0.1..=179.0);
+    let mut settings = Settings { camera: any_camera(rng), ..Settings::default() };
     settings.film.size = [rng.random_range(1..16384), rng.random_range(1..16384)];
     settings.film.seed = rng.random_range(0..1 << 53);
     settings.film.spp = rng.random();
@@ -442,6 +468,28 @@ fn any_settings(rng: &mut impl Rng, home: &Path) -> Settings {
     settings.surface = (0..rng.random_range(0..3)).map(|_| any_surface(rng)).collect();
     // What the choices leave over is not part of a scene.
     scene::tidy(&settings).unwrap()
+}
+
+fn any_camera(rng: &mut impl Rng) -> CameraSettings {
+    CameraSettings {
+        position: vector(rng),
+        fov_x: rng.random_range(0.1..=179.0),
+        sensor_width: maybe(rng, |rng| rng.random_range(1.0..90.0)).unwrap_or(36.0),
+        f_stop: maybe(rng, |rng| rng.random_range(0.1..90.0)).unwrap_or(0.0),
+        focus_distance: maybe(rng, |rng| rng.random_range(0.1..90.0)),
+        shift: [rng.random_range(-1.0..1.0), 0.0],
+        key: (0..rng.random_range(0..4)).map(|number| any_key(rng, number)).collect(),
+        ..CameraSettings::default()
+    }
+}
+
+fn any_key<R: Rng>(rng: &mut R, number: i32) -> CameraKey {
+    CameraKey {
+        frame: 1.5 * f64::from(number),
+        position: maybe(rng, vector),
+        target: maybe(rng, vector),
+        fov_x: maybe(rng, |rng| rng.random_range(0.1..=179.0)),
+    }
 }
 
 fn any_volume(rng: &mut impl Rng, home: &Path) -> VolumeSettings {

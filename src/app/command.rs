@@ -26,7 +26,9 @@ pub enum Command {
     PreviousFrame,
     NextFrame,
     SaveFlipbook,
+    CameraKey,
     FrameVolume,
+    FocusByClick,
     FitPicture,
     ZoomToPixels,
     ExposureUp,
@@ -191,6 +193,21 @@ impl Command {
                 Key::F,
                 "Frame the volumes",
                 "Move the camera so that all volumes fit into the picture.",
+            ),
+            C::CameraKey => (
+                PLAIN,
+                Key::I,
+                "Camera key",
+                "Set a key of the camera in this frame, so that it moves to here from the key \
+                 before and on to the next, or remove the one that there is. A camera that has \
+                 keys gets one where it is moved.",
+            ),
+            C::FocusByClick => (
+                SHIFT,
+                Key::F,
+                "Focus by click",
+                "Click on the picture to focus on what is seen there: fire, what hides most of \
+                 what is behind it, or a surface.",
             ),
             C::FitPicture => {
                 (PLAIN, Key::Home, "Fit the picture", "Zoom so that the whole picture is visible.")

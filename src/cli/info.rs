@@ -14,7 +14,7 @@ use crate::files::path_of;
 use crate::format::{in_steps, mebibytes};
 use crate::image::exr::{Info, read_info};
 use crate::scene::sequence::NumberedSet;
-use crate::scene::settings::VolumeSettings;
+use crate::scene::settings::{CameraSettings, VolumeSettings};
 use crate::scene::{self, GridDescription, Settings, VolumeCache};
 use crate::volume::file::GridInfo;
 
@@ -189,6 +189,22 @@ fn layers(channels: &[String]) -> String {
     words.join(", ")
 }
 
+fn describe_camera(settings: &Settings) -> String {
+    let CameraSettings { position, target, fov_x, f_stop, .. } = settings.present_camera();
+    let mut text = format!("{position:?} to {target:?}, {fov_x} degrees");
+    if f_stop > 0.0 {
+        text += &format!(", f/{f_stop}");
+    }
+    match settings.camera.key.as_slice() {
+        [] => text,
+        [key] => text + &format!(", one key, of frame {}", key.frame),
+        [first, .., last] => {
+            let count = settings.camera.key.len();
+            text + &format!(", {count} keys, of frames {} to {}", first.frame, last.frame)
+        }
+    }
+}
+
 fn summary(settings: &Settings) -> String {
     let mut report = InfoText::default();
     let [width, height] = settings.film.size;
@@ -198,9 +214,7 @@ fn summary(settings: &Settings) -> String {
         spp => format!("{spp} samples per pixel"),
     };
     report.row("film", format!("{width} x {height} pixels, {spp}, seed {}", settings.film.seed));
-    let camera = &settings.camera;
-    let (position, target) = (camera.position, camera.target);
-    report.row("camera", format!("{position:?} to {target:?}, {} degrees", camera.fov_x));
+    report.row("camera", describe_camera(settings));
     report.row("environment", format!("radiance {}", plain(&settings.environment.radiance)));
     for volume in &settings.volume {
         report.row("volume", describe_volume(volume));

@@ -28,13 +28,13 @@ const ALL_ROWS: u32 = 2 * STRATIFIED_VERTICES * ROWS;
 /// |---|---|---|---|
 /// | `PixelX`, `DirectionX` | `PixelY`, `DirectionY` | `Emission` | `TransmittanceA` |
 /// | `Distance` | `GuidedDistance` | `Time`, `DirectionPick` | `TransmittanceB` |
-/// | `LightX` | `LightY` | `LightCell` | `LightPick` |
+/// | `LensX`, `LightX` | `LensY`, `LightY` | `LightCell` | `LightPick` |
 /// | `LightEmission` | `LightTransmittanceA` | `LightZ` | `LightTransmittanceB` |
 /// | `FireCount` | `LampCount` | `WalkCount` | `GuidedCount` |
 ///
 /// The first number of a row and the second make up the best pair. The camera has the slots
 /// `Pixel*` and `Time`, every other vertex the slots `Direction*` in their place: both choose the
-/// ray that leaves.
+/// ray that leaves. The camera has no light samples, so `Lens*` take their place there.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Slot {
     /// Horizontal position of a camera ray in its pixel, from left to right; at vertex 0 only.
@@ -43,6 +43,10 @@ pub enum Slot {
     PixelY,
     /// Time of the path within the shutter; at vertex 0 only.
     Time,
+    /// First coordinate of the point on the lens; at vertex 0 only.
+    LensX,
+    /// Second coordinate of the point on the lens; at vertex 0 only.
+    LensY,
     /// Jitter of the emission walk's reads along the ray that leaves the vertex.
     Emission,
     /// Jitter of the transmittance estimate along the ray that leaves the vertex.
@@ -98,8 +102,8 @@ impl Slot {
             Self::GuidedDistance => (1, 1),
             Self::Time | Self::DirectionPick => (1, 2),
             Self::TransmittanceB => (1, 3),
-            Self::LightX => (2, 0),
-            Self::LightY => (2, 1),
+            Self::LensX | Self::LightX => (2, 0),
+            Self::LensY | Self::LightY => (2, 1),
             Self::LightCell => (2, 2),
             Self::LightPick => (2, 3),
             Self::LightEmission => (3, 0),
@@ -360,10 +364,12 @@ mod tests {
         assert!((sum / f64::from(n) - 1.0).abs() < 5e-3);
     }
 
-    const SLOTS: [Slot; 23] = [
+    const SLOTS: [Slot; 25] = [
         Slot::PixelX,
         Slot::PixelY,
         Slot::Time,
+        Slot::LensX,
+        Slot::LensY,
         Slot::Emission,
         Slot::TransmittanceA,
         Slot::TransmittanceB,
@@ -394,12 +400,15 @@ mod tests {
     }
 
     #[test]
-    fn slots_share_numbers_only_between_pixel_and_turn() {
+    fn slots_share_numbers_only_between_the_camera_and_later_vertices() {
         for (i, a) in SLOTS.iter().enumerate() {
             for b in &SLOTS[..i] {
                 let pixel_and_turn = matches!(b, Slot::PixelX | Slot::PixelY | Slot::Time)
                     && matches!(a, Slot::DirectionX | Slot::DirectionY | Slot::DirectionPick);
-                assert!(a.place() != b.place() || pixel_and_turn, "{a:?} and {b:?}");
+                let lens_and_light = matches!(b, Slot::LensX | Slot::LensY)
+                    && matches!(a, Slot::LightX | Slot::LightY);
+                let at_camera = pixel_and_turn || lens_and_light;
+                assert!(a.place() != b.place() || at_camera, "{a:?} and {b:?}");
             }
         }
     }

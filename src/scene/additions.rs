@@ -140,7 +140,8 @@ mod tests {
         };
         for kind in KINDS {
             let light = new_light(kind, &camera);
-            let scene = Settings { camera, light: vec![light.clone()], ..Settings::default() };
+            let mut scene = Settings { light: vec![light.clone()], ..Settings::default() };
+            scene.camera = camera.clone();
             validate(&scene, "").unwrap();
             let built = assemble(&scene, &VolumeCache::default(), NO_PROGRESS).unwrap();
             let from = match kind {

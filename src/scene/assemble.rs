@@ -1,22 +1,22 @@
 //! Settings to the core's scene.
 
+mod camera;
 mod motion;
 mod placement;
 mod source;
 mod surfaces;
 mod volumes;
 
-use glam::Vec3A;
-
 use super::sequence::Gap;
 use super::{VolumeCache, settings::Settings};
 use crate::{
-    error::{Error, Progress, Result},
+    error::{Progress, Result},
     light::Lights,
-    transport::{Scene, camera::Camera},
+    transport::Scene,
     volume::world::World,
 };
 
+pub use camera::camera;
 pub(crate) use placement::world_from_file;
 use surfaces::LightOrSurface;
 
@@ -75,17 +75,4 @@ pub fn assemble_frame(
 pub fn prefetch(settings: &Settings, cache: &VolumeCache, progress: Progress) -> Result<()> {
     volumes::instances(&settings.volume, &settings.time, cache, progress)?;
     Ok(())
-}
-
-/// The camera of the settings.
-///
-/// # Errors
-/// The camera has no direction; names the key.
-pub fn camera(settings: &Settings) -> Result<Camera> {
-    let camera = &settings.camera;
-    let [position, target, up] = [camera.position, camera.target, camera.up].map(Vec3A::from_array);
-    Camera::look_at(position, target, up, camera.fov_x).ok_or_else(|| {
-        let reason = "position, target and up must differ in direction";
-        Error::invalid("", "camera", reason)
-    })
 }

@@ -29,7 +29,7 @@ pub fn fit_camera(view: &CameraSettings, bounds: &Aabb, aspect: f32) -> CameraSe
     CameraSettings {
         position: (center - distance * forward).to_array(),
         target: center.to_array(),
-        ..*view
+        ..view.clone()
     }
 }
 

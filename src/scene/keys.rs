@@ -143,6 +143,10 @@ mod tests {
             assert!(key.help.len() > 8, "{} has no help", key.path);
             assert!(!key.kind.is_empty(), "{} has no type", key.path);
             let absent_means_something = [
+                "camera.focus_distance",
+                "camera.key.N.position",
+                "camera.key.N.target",
+                "camera.key.N.fov_x",
                 "volume.N.file",
                 "volume.N.shape",
                 "volume.N.matrix",

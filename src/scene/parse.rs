@@ -6,7 +6,7 @@ use serde::Deserialize;
 use toml::{Table, Value};
 
 use super::overrides::{OVERRIDES, Overrides, drop_all_stray, expand_preset};
-use super::settings::Settings;
+use super::settings::{CameraSettings, Settings, field_of_view};
 use super::{check, files, rules, schema};
 use crate::error::{Error, Result};
 
@@ -18,7 +18,7 @@ use crate::error::{Error, Result};
 pub fn parse(text: &str, source: &str, folder: &Path, overrides: &Overrides) -> Result<Settings> {
     let mut scene: Table = toml::from_str(text).map_err(|e| syntax(text, source, &e))?;
     expand_preset(&mut scene, source)?;
-    spell_brightness_one_way(&mut scene, source)?;
+    spell_one_way(&mut scene, source)?;
     check::check_keys(&scene, source)?;
     resolve_files(&mut scene, folder)?;
     let settings = from_table(scene, source)?;
@@ -37,7 +37,7 @@ pub fn apply(settings: &Settings, overrides: &Overrides) -> Result<Settings> {
     let source = OVERRIDES;
     let mut scene = to_table(settings)?;
     overrides.apply(&mut scene)?;
-    spell_brightness_one_way(&mut scene, source)?;
+    spell_one_way(&mut scene, source)?;
     check::check_keys(&scene, source)?;
     let settings = from_table(scene, source)?;
     rules::check_rules(&settings, source)?;
@@ -86,6 +86,43 @@ fn resolve_files(scene: &mut Table, folder: &Path) -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// Brings keys that may be spelled in two ways to one.
+fn spell_one_way(scene: &mut Table, source: &str) -> Result<()> {
+    spell_brightness_one_way(scene, source)?;
+    spell_lenses_one_way(scene, source)
+}
+
+/// A camera's focal length is its field of view.
+fn spell_lenses_one_way(scene: &mut Table, source: &str) -> Result<()> {
+    let Some(Value::Table(camera)) = scene.get_mut("camera") else { return Ok(()) };
+    let sensor = camera.get("sensor_width").and_then(number);
+    let sensor = sensor.unwrap_or_else(|| CameraSettings::default().sensor_width.into());
+    spell_lens_one_way(camera, sensor, (source, "camera"))?;
+    let Some(Value::Array(keys)) = camera.get_mut("key") else { return Ok(()) };
+    for (index, key) in keys.iter_mut().enumerate() {
+        if let Value::Table(key) = key {
+            spell_lens_one_way(key, sensor, (source, &format!("camera.key.{index}")))?;
+        }
+    }
+    Ok(())
+}
+
+fn spell_lens_one_way(lens: &mut Table, sensor: f64, (source, path): (&str, &str)) -> Result<()> {
+    const MM: &str = "a focal length is a number above 0, in millimeters";
+    let Some(length) = lens.remove("focal_length") else { return Ok(()) };
+    let invalid = |reason: &str| Error::invalid(source, format!("{path}.focal_length"), reason);
+    if source != OVERRIDES && lens.contains_key("fov_x") {
+        return Err(invalid("it and fov_x mean the same; leave one out"));
+    }
+    let length = number(&length).filter(|length| *length > 0.0).ok_or_else(|| invalid(MM))?;
+    lens.insert("fov_x".to_owned(), Value::Float(field_of_view(length, sensor)));
+    Ok(())
+}
+
+fn number(value: &Value) -> Option<f64> {
+    value.as_float().or_else(|| value.as_integer().map(|number| number as f64))
 }
 
 /// A sun's `irradiance` and a sphere's or quad's `radiance` are their `intensity`.

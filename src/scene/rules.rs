@@ -44,11 +44,27 @@ fn fault(key: &'static str, reason: impl Into<String>) -> Result<(), Fault> {
 }
 
 fn camera(camera: &CameraSettings) -> Result<(), Fault> {
+    if camera.key.windows(2).any(|pair| pair[0].frame >= pair[1].frame) {
+        return fault("key", "the frames of the keys must ascend");
+    }
+    direction("up", camera.up)?;
+    if camera.key.is_empty() {
+        return camera_view(camera);
+    }
+    for key in &camera.key {
+        camera_view(&camera.at(key.frame)).map_err(|(name, reason)| {
+            (name, format!("{reason} (in the camera.key of frame {})", key.frame))
+        })?;
+    }
+    Ok(())
+}
+
+/// Checks a camera without keys.
+fn camera_view(camera: &CameraSettings) -> Result<(), Fault> {
     let forward = Vec3::from(camera.target) - Vec3::from(camera.position);
     if forward.try_normalize().is_none() {
         return fault("target", "target and position are the same point; move one of them");
     }
-    direction("up", camera.up)?;
     let side = forward.normalize().cross(Vec3::from(camera.up).normalize());
     if side.length() < 1e-6 {
         return fault("up", "up points along the view; choose another direction");

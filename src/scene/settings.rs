@@ -16,7 +16,7 @@ mod values;
 mod velocity;
 mod volume;
 
-pub use camera::CameraSettings;
+pub use camera::{CameraKey, CameraSettings, field_of_view, focal_length};
 pub use emission::{EmissionMode, EmissionSettings, Normalize};
 pub use film::{EnvironmentSettings, FilmSettings, MAX_SEED, PathSettings};
 pub use light::{LightKind, LightSettings};
@@ -61,6 +61,16 @@ pub struct Settings {
 }
 
 impl Settings {
+    /// The camera as it stands in the present frame, without keys.
+    pub fn present_camera(&self) -> CameraSettings {
+        self.camera.at(self.time.frame)
+    }
+
+    /// Makes the camera stand in the present frame as `still` does, by a key if it has any.
+    pub fn set_present_camera(&mut self, still: CameraSettings) {
+        self.camera.set_at(self.time.frame, still);
+    }
+
     /// The seed of the picture: that of the film, which moves on with the frame where
     /// `film.animate_seed` says so, so that the noise of a sequence does not stick to the screen.
     pub fn picture_seed(&self) -> u64 {

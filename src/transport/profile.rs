@@ -26,6 +26,10 @@ const STEPS: u32 = 4;
 const POINTS: u32 = 128;
 /// Optical depth to which a medium without end is followed.
 const DEEPEST: f32 = 7.0;
+/// Places along a ray at which something may be seen.
+const DEPTHS: u32 = 512;
+/// Transmittance above which a medium hides too little to be what is looked at.
+const MOSTLY_CLEAR: f32 = 0.9;
 /// Fixed seed, which no picture is likely to use.
 const SEED: u64 = 0x7072_6f66_696c_652e;
 
@@ -104,6 +108,40 @@ impl Profile {
         });
         Some(Self { rows, optical_depth, guided, flights_scale })
     }
+}
+
+/// Distance along `ray` of what is seen there: the middle of the light of fire; else of what the
+/// medium hides, where that is more than a tenth; else the surface at the end. `None` where there
+/// is nothing to see.
+pub fn depth_seen(scene: &Scene, ray: &Ray) -> Option<f32> {
+    let surface = surface::intersect(&scene.surfaces, ray).map(|end| end.hit.t);
+    let medium = scene.world.along(*ray, surface.unwrap_or(f32::INFINITY));
+    let extent = medium
+        .extent()
+        .map(|(t0, end)| (t0, if end.is_finite() { end } else { visible_end(medium.clone(), t0) }));
+    let Some((t0, t1)) = extent.filter(|(t0, t1)| t0 < t1 && t1.is_finite()) else {
+        return surface;
+    };
+    let step = (t1 - t0) / (DEPTHS - 1) as f32;
+    let row = |i| ProfileRow { t: t0 + i as f32 * step, ..ProfileRow::default() };
+    let mut rows: Vec<ProfileRow> = (0..DEPTHS).map(row).collect();
+    let optical_depth =
+        read_medium(medium, EmissionGathering::of(&scene.strategy), &mut rows, step);
+    let light = |row: &ProfileRow| row.transmittance * row.emission;
+    let hidden = |row: &ProfileRow| row.transmittance * row.mu_t;
+    let hides = (-optical_depth).exp() < MOSTLY_CLEAR;
+    middle(&rows, light).or_else(|| middle(&rows, hidden).filter(|_| hides)).or(surface)
+}
+
+/// Distance at which half of the sum of `share` over all rows is reached; `None` where that is 0.
+fn middle(rows: &[ProfileRow], share: impl Fn(&ProfileRow) -> f32) -> Option<f32> {
+    let sum: f32 = rows.iter().map(&share).sum();
+    let mut below = 0.0;
+    let row = rows.iter().find(|row| {
+        below += share(row);
+        2.0 * below >= sum
+    });
+    row.filter(|_| sum > 0.0 && sum.is_finite()).map(|row| row.t)
 }
 
 /// Distance at which a medium without end has become dark.

@@ -46,8 +46,8 @@ impl Scene {
         Self { strategy, ..self }
     }
 
-    /// A camera ray in its pixel at a random time while the shutter is open. Where that is one
-    /// moment, or nothing moves, no number is drawn.
+    /// A camera ray in its pixel, through a random point of the lens and at a random time while the
+    /// shutter is open. No number is drawn for a pinhole, nor where nothing moves.
     pub(super) fn camera_ray(
         &self,
         size: UVec2,
@@ -55,11 +55,13 @@ impl Scene {
         offset: Vec2,
         rng: &mut PathRng,
     ) -> Ray {
-        let ray = self.camera.ray(size, pixel, offset);
-        match self.world.open_seconds() {
-            0.0 => ray,
-            seconds => ray.at_time((rng.at(Slot::Time) - 0.5) * seconds),
-        }
+        let time = match self.world.open_seconds().max(self.camera.open_seconds()) {
+            0.0 => 0.0,
+            seconds => (rng.at(Slot::Time) - 0.5) * seconds,
+        };
+        let mut u = || Vec2::new(rng.at(Slot::LensX), rng.at(Slot::LensY));
+        let on_lens = self.camera.has_aperture().then(&mut u);
+        self.camera.lens_ray((size, pixel, offset), on_lens, time)
     }
 
     /// The effective strategy: toggles that change nothing in this scene have one position.

@@ -98,7 +98,9 @@ fn meant_for(command: Command) -> MeantFor {
         | Command::PreviousFrame
         | Command::NextFrame
         | Command::SaveFlipbook
+        | Command::CameraKey
         | Command::FrameVolume
+        | Command::FocusByClick
         | Command::ZoomToPixels
         | Command::ExposureUp
         | Command::ExposureDown

@@ -110,7 +110,7 @@ fn every_kind_of_light_can_be_built_and_changed_into_every_other() {
 #[test]
 fn a_handle_moves_the_light_and_leaves_the_camera_alone() {
     let Some(mut window) = with_light("Add point") else { return };
-    let camera = window.document().settings.camera;
+    let camera = window.document().settings.camera.clone();
     let before = lights(&window)[0].position();
     let handle = |window: &Window, name: &str| {
         window.harness.get_by_role_and_label(Role::Button, name).rect().center()
@@ -176,7 +176,7 @@ fn spots_are_aimed_and_suns_turned_over_the_picture() {
 #[test]
 fn a_fast_hand_on_a_slow_machine_moves_the_light_and_not_the_camera() {
     let Some(mut window) = with_light("Add point") else { return };
-    let camera = window.document().settings.camera;
+    let camera = window.document().settings.camera.clone();
     let before = lights(&window)[0].position();
     let handle = window.harness.get_by_role_and_label(Role::Button, "Move light");
     let from = handle.rect().center();

@@ -3,6 +3,7 @@
 //! Without a graphics adapter the tests are skipped with a message, unless
 //! `FLAMBEAU_REQUIRE_WINDOW_TESTS=1` says that there has to be one.
 
+mod cameras;
 mod commands;
 mod compare;
 mod crop;
@@ -398,7 +399,7 @@ fn a_slider_restarts_the_render_and_undo_brings_the_value_back() {
 #[test]
 fn a_drag_on_the_picture_orbits_as_one_edit() {
     let Some(mut window) = Window::open(BALL) else { return };
-    let before = window.document().settings.camera;
+    let before = window.document().settings.camera.clone();
     let start = window.harness.get_by_role_and_label(Role::Image, "Picture").rect().center();
     window.harness.drag_at(start);
     for step in 1..6 {
@@ -407,7 +408,7 @@ fn a_drag_on_the_picture_orbits_as_one_edit() {
     window.harness.drop_at(start + egui::vec2(80.0, 4.0));
     window.harness.step();
     window.settle();
-    let after = window.document().settings.camera;
+    let after = window.document().settings.camera.clone();
     assert_ne!(after.position, before.position);
     assert_eq!(after.target, before.target);
     window.press(Modifiers::COMMAND, Key::Z);

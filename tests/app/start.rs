@@ -74,7 +74,7 @@ fn the_picture_takes_the_full_screen_and_gives_it_back() {
 #[test]
 fn keys_orbit_pan_and_dolly_while_the_picture_has_the_focus() {
     let Some(mut window) = Window::open(BALL) else { return };
-    let camera = |window: &Window| window.document().settings.camera;
+    let camera = |window: &Window| window.document().settings.camera.clone();
     let opened = camera(&window);
     window.press(Modifiers::NONE, Key::PageUp);
     assert_eq!(camera(&window), opened, "not before it has it");

@@ -2,6 +2,7 @@
 //! what must not change a picture. One binary, so that long tests run side by side.
 
 mod agree;
+mod cameras;
 mod caustics;
 mod closed_forms;
 mod common;

@@ -167,6 +167,30 @@ fn a_varying_velocity_blurs_as_stills_of_fractional_frames() {
     hold_against_stills(&blurred, &stills, 2, PathSample::beauty);
 }
 
+/// A camera that passes a key while the shutter is open, goes on another way from there, and zooms.
+#[test]
+fn a_moving_camera_blurs_as_stills_of_fractional_frames() {
+    let keys = "
+    [[camera.key]]
+    frame = 2.5
+    position = [-1.2, -5, 1.5]
+    fov_x = 30
+    [[camera.key]]
+    frame = 3.1
+    position = [0.9, -4, 1.5]
+    target = [0.3, 0, 0]
+    fov_x = 42
+    [[camera.key]]
+    frame = 3.6
+    position = [0.9, -4, -0.3]
+    [environment]";
+    let (camera, others) = EVERYTHING.split_once("[environment]").unwrap();
+    let scene = |time: &str| build(&format!("{camera}{keys}{others}\n[time]\n{time}"));
+    let stills: Vec<Scene> =
+        middles(18, 0.9).map(|frames| scene(&format!("frame = {}", 3.0 + frames))).collect();
+    hold_against_stills(&scene("frame = 3\nshutter = 0.9"), &stills, 2, PathSample::beauty);
+}
+
 /// The medium at a point and a time.
 fn medium_at(world: &World, point: Vec3A, time: f32) -> Coefficients {
     let mut medium = world.along(Ray::new(point, Vec3A::X).at_time(time), 1e-4);

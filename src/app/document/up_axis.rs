@@ -22,12 +22,19 @@ pub fn set(settings: &mut Settings, index: usize, up: Axis) {
     volume.rotate = upright(up);
     if alone {
         let origin = Vec3::from(volume.translate);
+        let turned = turn(volume.rotate) * before.inverse();
+        let follow = |target: &mut [f32; 3], position: &mut [f32; 3]| {
+            let offset = Vec3::from(*position) - Vec3::from(*target);
+            let moved = origin + turned * (Vec3::from(*target) - origin);
+            *target = moved.to_array();
+            *position = (moved + offset).to_array();
+        };
         let camera = &mut settings.camera;
-        let (target, offset) = (Vec3::from(camera.target), Vec3::from(camera.position));
-        let offset = offset - target;
-        let moved = origin + turn(volume.rotate) * (before.inverse() * (target - origin));
-        camera.target = moved.to_array();
-        camera.position = (moved + offset).to_array();
+        let own = (camera.target, camera.position);
+        follow(&mut camera.target, &mut camera.position);
+        for key in &mut camera.key {
+            follow(key.target.get_or_insert(own.0), key.position.get_or_insert(own.1));
+        }
     }
 }
 

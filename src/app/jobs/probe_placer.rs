@@ -12,7 +12,6 @@ use crate::error::{Error, Progress, Result};
 use crate::render::pool::{Pool, Priority};
 use crate::render::{Request, Resume, Session};
 use crate::scene::Settings;
-use crate::scene::settings::CameraSettings;
 use crate::transport::prepare::SceneProbes;
 use crate::transport::probes::Probes;
 use crate::transport::{Frame, PixelSampler, Scene};
@@ -205,9 +204,9 @@ fn same(a: &BuiltScene, b: &BuiltScene) -> bool {
 fn same_places(a: &BuiltScene, b: &BuiltScene) -> bool {
     // All keys are named, so that a new one cannot leave stale probes. The film has no part in the
     // probes, the volumes are compared as they were built at their frame, and the strategy by its
-    // recipe.
+    // recipe. Of the camera, only its position in the frame matters.
     let Settings {
-        camera,
+        camera: _,
         film: _,
         time: _,
         path,
@@ -217,14 +216,13 @@ fn same_places(a: &BuiltScene, b: &BuiltScene) -> bool {
         surface,
         strategy: _,
     } = &a.settings;
-    // The target of the camera does not matter.
-    let CameraSettings { position, target: _, up: _, fov_x: _ } = camera;
     *environment == b.settings.environment
         && *path == b.settings.path
         && *light == b.settings.light
         && *surface == b.settings.surface
         && a.scene.world.has_volumes_of(&b.scene.world)
-        && (!Probes::heed_camera(&b.scene) || *position == b.settings.camera.position)
+        && (!Probes::heed_camera(&b.scene)
+            || a.scene.camera.position() == b.scene.camera.position())
 }
 
 #[cfg(test)]

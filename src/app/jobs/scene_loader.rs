@@ -208,7 +208,7 @@ fn run(
 /// Reads the frames around that of `settings` while nothing else is asked for and there is room.
 /// One that cannot be read is reported when the scene goes to it.
 fn prefetch(settings: &Settings, cache: &VolumeCache, progress: Progress<'_>) {
-    let Some([first, last]) = time_range(&settings.volume, &settings.time) else { return };
+    let Some([first, last]) = time_range(settings) else { return };
     let frame = settings.time.whole_frame();
     let around = PREFETCHED.into_iter().map(|offset| frame.saturating_add(offset));
     for frame in around.filter(|frame| (first..=last).contains(frame)) {

@@ -8,7 +8,7 @@ use crate::app::document::Document;
 use crate::app::ui::theme::space;
 use crate::app::ui::widgets::{Number, finite, is_reset, key_help, row, row_label, segments};
 use crate::scene::keys;
-use crate::scene::settings::{FilmSettings, TimeSettings};
+use crate::scene::settings::{FilmSettings, MAX_FRAME, TimeSettings};
 
 /// Shows the section. `window` is the size that the film takes from the window, `largest` the
 /// most that the graphics card can show a side.
@@ -19,7 +19,8 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>, window: Option<UVec2>, largest: 
         let (reset_size, reset_shutter) = (opened.film.size, opened.time.shutter as f32);
         let document = &mut panel.editor.document;
         let mut edit = size_rows(ui, document, reset_size, (window, largest));
-        let moves = document.settings.volume.iter().any(|volume| volume.velocity.is_some());
+        let moves = document.settings.volume.iter().any(|volume| volume.velocity.is_some())
+            || document.settings.camera.key.len() > 1;
         let time = &mut document.settings.time;
         let film = &mut document.settings.film;
         let path = &mut document.settings.path;
@@ -39,10 +40,11 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>, window: Option<UVec2>, largest: 
             film.spp = u32::try_from(spp).unwrap_or(u32::MAX);
             edit = Some("max samples");
         }
-        if panel.has_frames || moves {
-            let shown = [panel.has_frames, moves];
-            edit = edit.or(frame_rows(ui, shown, film, time, reset_shutter));
+        if range_row(ui, time, panel.frames) {
+            edit = Some("frames of the time line");
         }
+        let shown = [panel.frames.is_some(), moves];
+        edit = edit.or(frame_rows(ui, shown, film, time, reset_shutter));
         let bounces = Whole {
             name: "Max bounces",
             key: "path.max_scatters",
@@ -89,6 +91,37 @@ fn size_rows(
         row(ui, "", "", |ui| ui.weak(format!("{} × {} pixels", size.x, size.y)));
     }
     edit
+}
+
+/// Shows the first and the last frame of the time line; whether they changed. `frames` are those
+/// that it has, if there is one.
+fn range_row(ui: &mut Ui, time: &mut TimeSettings, frames: Option<[i32; 2]>) -> bool {
+    let before = time.range;
+    let help = format!("{}\n\nDouble-click the name to reset.", key_help("time.range"));
+    ui.horizontal(|ui| {
+        let label = row_label(ui, "Frames", &help);
+        let own = [time.whole_frame(); 2];
+        let mut range = time.range.or(frames).unwrap_or(own);
+        let shown = range;
+        for (number, name) in range.iter_mut().zip(["First frame", "Last frame"]) {
+            let field = DragValue::new(number).range(-MAX_FRAME..=MAX_FRAME).speed(1.0);
+            let field = field.update_while_editing(false);
+            let response = ui.add_sized([space::NUMBER, space::ROW_HEIGHT], field);
+            response.accessible_name(name).on_hover_text(&help);
+        }
+        if range != shown {
+            let pulled = usize::from(range[0] == shown[0]);
+            range[1 - pulled] = match pulled {
+                0 => range[1].max(range[0]),
+                _ => range[0].min(range[1]),
+            };
+            time.range = Some(range);
+        }
+        if is_reset(ui, &[&label]) {
+            time.range = None;
+        }
+    });
+    time.range != before
 }
 
 /// Shows the noise of frames and the shutter, where the scene has frames and where it moves. The

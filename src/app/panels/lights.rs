@@ -23,7 +23,7 @@ const KINDS: [(LightKind, &str, &str); 5] = [
 pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
     folded_section(ui, "Lights", |ui| {
         let mut edit = environment(ui, panel);
-        let camera = panel.editor.document.settings.camera;
+        let camera = panel.editor.document.settings.present_camera();
         let opened = panel.editor.opened().settings.light.clone();
         let lights = &mut panel.editor.document.settings.light;
         edit = edit.or(add(ui, lights, &camera, panel.selected_light));

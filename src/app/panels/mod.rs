@@ -43,8 +43,8 @@ pub struct Panel<'a> {
     pub grids: &'a Grids,
     /// The guesses made when a bare volume was opened.
     pub notes: &'a [Note],
-    /// Whether the scene has more than one frame.
-    pub has_frames: bool,
+    /// First and last frame of the time line; `None` for a scene of one frame.
+    pub frames: Option<[i32; 2]>,
     /// The box around all that fills space, or around the camera's target where nothing does.
     pub bounds: Aabb,
     /// The light whose keys and handles are shown.

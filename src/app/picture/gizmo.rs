@@ -115,7 +115,7 @@ impl Gizmo {
             self.grip = None;
         }
         if self.grip.is_some() {
-            editor.document.settings.camera = start.camera;
+            editor.document.settings.camera = start.camera.clone();
         }
     }
 

@@ -107,6 +107,8 @@ pub struct Viewport {
     pub zoom: Zoom,
     /// The pixel under the pointer and its value.
     pub probe: Option<Probe>,
+    /// Whether the next click chooses the focus of the camera.
+    pub picks_focus: bool,
     /// Whether the keyboard is to go to the picture.
     pub wants_keyboard: bool,
     /// The area in framebuffer pixels that the film fills, once it has lasted.
@@ -182,6 +184,9 @@ impl Viewport {
         self.size = from_egui(area.size()) * factor;
         self.pointer = under.map(|at| from_egui(at - area.min) * factor);
         let view = hovered.map(|pane| self.view(pane, factor));
+        if self.picks_focus && response.hovered() {
+            ui.set_cursor_icon(CursorIcon::Crosshair);
+        }
         steer(ui, &response, editor);
         if !region.draw(ui, &response, view.as_ref()) {
             self.navigate(ui, &response, editor, hovered.map(|pane| pane.picture.size));
@@ -266,30 +271,22 @@ impl Viewport {
                 return;
             }
         }
-        let camera = &mut editor.document.settings.camera;
-        let before = *camera;
-        let pose = pose(camera);
-        let name = if response.dragged_by(PointerButton::Middle) || primary && modifiers.shift {
-            set_pose(camera, pose.pan(drag / width, camera.fov_x));
-            "pan"
-        } else if primary {
-            set_pose(camera, pose.orbit(drag / width));
-            "orbit"
-        } else if response.dragged_by(PointerButton::Secondary) {
-            set_pose(camera, pose.dolly(-drag.y / 20.0));
-            "dolly"
-        } else if response.contains_pointer() {
-            let wheel = ui.input(|input| input.smooth_scroll_delta().y);
-            if wheel != 0.0 {
-                set_pose(camera, pose.dolly(wheel / NOTCH));
-            }
-            "dolly"
-        } else {
-            return;
-        };
-        if *camera != before {
-            editor.name_edit(name);
-        }
+        let camera = editor.document.settings.present_camera();
+        let pose = pose(&camera);
+        let (name, moved) =
+            if response.dragged_by(PointerButton::Middle) || primary && modifiers.shift {
+                ("pan", pose.pan(drag / width, camera.fov_x))
+            } else if primary {
+                ("orbit", pose.orbit(drag / width))
+            } else if response.dragged_by(PointerButton::Secondary) {
+                ("dolly", pose.dolly(-drag.y / 20.0))
+            } else if response.contains_pointer() {
+                let wheel = ui.input(|input| input.smooth_scroll_delta().y);
+                ("dolly", if wheel == 0.0 { pose } else { pose.dolly(wheel / NOTCH) })
+            } else {
+                return;
+            };
+        move_camera(editor, camera, moved, name);
     }
 }
 
@@ -302,16 +299,25 @@ fn steer(ui: &Ui, response: &Response, editor: &mut Editor) {
     let pressed = |key| ui.input(|input| input.num_presses(key)) as f32;
     let closer = pressed(Key::PageUp) - pressed(Key::PageDown);
     let shift = ui.input(|input| input.modifiers.shift);
-    let camera = &mut editor.document.settings.camera;
-    let pose = pose(camera);
+    let camera = editor.document.settings.present_camera();
+    let pose = pose(&camera);
     let (name, moved) = match (steps != Vec2::ZERO, shift) {
         (true, true) => ("pan", pose.pan(-STEP * steps, camera.fov_x)),
         (true, false) => ("orbit", pose.orbit(STEP * steps)),
         (false, _) if closer != 0.0 => ("dolly", pose.dolly(closer)),
         (false, _) => return,
     };
-    set_pose(camera, moved);
-    editor.name_edit(name);
+    move_camera(editor, camera, moved, name);
+}
+
+/// Moves the camera of the present frame, and names that edit where it is one.
+fn move_camera(editor: &mut Editor, mut camera: CameraSettings, moved: Pose, name: &str) {
+    let before = camera.clone();
+    set_pose(&mut camera, moved);
+    if camera != before {
+        editor.document.settings.set_present_camera(camera);
+        editor.name_edit(name);
+    }
 }
 
 /// Pose of the camera of these settings.

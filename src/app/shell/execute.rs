@@ -1,14 +1,12 @@
 //! Carries out commands.
 
 use egui::Context;
-use glam::UVec2;
 
 use super::app::App;
 use crate::app::command::Command;
 use crate::app::document::Side;
 use crate::app::jobs::dialogs::Purpose;
 use crate::image::tone::{Channel, auto_exposure};
-use crate::scene;
 use crate::transport::toggle::Toggle;
 
 impl App {
@@ -30,7 +28,9 @@ impl App {
             Command::PreviousFrame => self.step_frame(-1),
             Command::SaveFlipbook => self.ask_to_save_flipbook(ctx),
             Command::NextFrame => self.step_frame(1),
+            Command::CameraKey => self.set_or_remove_camera_key(),
             Command::FrameVolume => self.frame_volume(),
+            Command::FocusByClick => self.pick_focus(),
             Command::FitPicture => self.viewport.zoom = Default::default(),
             Command::ZoomToPixels => self.zoom_to_pixels(),
             Command::ExposureUp => self.expose_by(0.5),
@@ -128,6 +128,8 @@ impl App {
             self.stay();
         } else if self.sweep.open && self.sweep.results().is_some() {
             self.sweep.open = false;
+        } else if self.viewport.picks_focus {
+            self.viewport.picks_focus = false;
         } else if self.compare.region.is_armed() {
             self.compare.region.remove();
         } else if self.chrome.full_screen {
@@ -160,16 +162,6 @@ impl App {
             self.editor.document.tone.exposure = stops;
             self.editor.name_edit("exposure");
         }
-    }
-
-    /// Moves the camera so that everything finite that fills space is in the picture.
-    fn frame_volume(&mut self) {
-        let Some(built) = self.live_render.built() else { return };
-        let Some(bounds) = built.scene.world.finite_bounds() else { return };
-        let size = self.film_size().unwrap_or(UVec2::ONE).as_vec2();
-        let camera = &mut self.editor.document.settings.camera;
-        *camera = scene::fit_camera(camera, &bounds, size.x / size.y);
-        self.editor.name_edit("frame the volumes");
     }
 }
 

@@ -125,7 +125,7 @@ impl App {
 
     /// The box around all that fills space, or around the camera's target where nothing does.
     pub(super) fn subject_bounds(&self) -> Aabb {
-        let camera = &self.editor.document.settings.camera;
+        let camera = self.editor.document.settings.present_camera();
         let target = Vec3A::from(camera.target);
         let around = Vec3A::splat(0.25 * target.distance(camera.position.into()).max(1e-3));
         let filled = self.live_render.built().and_then(|built| built.scene.world.finite_bounds());

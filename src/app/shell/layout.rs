@@ -85,7 +85,7 @@ impl App {
             editor: &mut self.editor,
             grids: self.live_render.grids(),
             notes: &self.opened.notes,
-            has_frames: self.time_line.range().is_some(),
+            frames: self.time_line.range(),
             bounds,
             selected_light: &mut self.gizmo.selected,
             guided_flights,
@@ -149,8 +149,13 @@ impl App {
                 if is_live {
                     marks::show(ui, rect, &mut self.compare, &self.editor.document);
                 }
-                let clicked = first.is_some_and(|view| view.clicked.is_some());
-                if clicked && !self.diagnostics.wanted.ray && !self.compare.region.remove() {
+                let clicked = first.and_then(|view| view.clicked);
+                if let Some(pixel) = clicked.filter(|_| self.viewport.picks_focus) {
+                    self.focus_on(pixel);
+                } else if clicked.is_some()
+                    && !self.diagnostics.wanted.ray
+                    && !self.compare.region.remove()
+                {
                     self.gizmo.selected = None;
                 }
                 if let Some(view) =

@@ -13,7 +13,8 @@ const RENDER: [&[Command]; 2] = [
     &[Command::PauseResume, Command::Restart],
     &[Command::Play, Command::PreviousFrame, Command::NextFrame, Command::SaveFlipbook],
 ];
-const VIEW: [&[Command]; 5] = [
+const VIEW: [&[Command]; 6] = [
+    &[Command::CameraKey, Command::FocusByClick],
     &[Command::FrameVolume, Command::FitPicture, Command::ZoomToPixels, Command::GoToPicture],
     &[Command::AutoExposure, Command::ExposureUp, Command::ExposureDown],
     &[Command::NextToneCurve, Command::FalseColor],

@@ -12,6 +12,7 @@
 
 mod app;
 mod bars;
+mod camera;
 mod chrome;
 mod compare;
 mod execute;

@@ -21,7 +21,7 @@ pub struct TimeLine {
     pub loops: bool,
     range: Option<[i32; 2]>,
     /// The settings that the range was found for.
-    ranged: Option<(Vec<VolumeSettings>, Option<[i32; 2]>)>,
+    ranged: Option<(Vec<VolumeSettings>, [Option<[i32; 2]>; 2])>,
     playback: Option<Playback>,
     /// The frame of the flipbook that is shown while it plays.
     playhead: Option<i32>,
@@ -63,12 +63,13 @@ impl TimeLine {
 
     /// Brings the frames in line with the settings, and drops pictures of another take.
     pub fn update(&mut self, settings: &Settings, take: &Take) {
-        let is_known = self.ranged.as_ref().is_some_and(|(volumes, range)| {
-            *volumes == settings.volume && *range == settings.time.range
+        let keys = settings.camera.key_range();
+        let is_known = self.ranged.as_ref().is_some_and(|(volumes, ranges)| {
+            *volumes == settings.volume && *ranges == [settings.time.range, keys]
         });
         if !is_known {
-            self.range = time_range(&settings.volume, &settings.time);
-            self.ranged = Some((settings.volume.clone(), settings.time.range));
+            self.range = time_range(settings);
+            self.ranged = Some((settings.volume.clone(), [settings.time.range, keys]));
         }
         self.flipbook.keep_only(take);
         if self.range().is_none() {

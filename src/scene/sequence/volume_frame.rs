@@ -5,7 +5,7 @@ use std::fmt;
 use super::{Frames, FramesOnDisk, Pattern, Shown};
 use crate::error::Result;
 use crate::files::name_of;
-use crate::scene::settings::{TimeSettings, VolumeSettings};
+use crate::scene::settings::{Settings, TimeSettings, VolumeSettings};
 
 /// The file that a volume shows in a frame.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -102,15 +102,17 @@ pub fn volume_frame(volume: &VolumeSettings, time: &TimeSettings) -> Result<Volu
     Ok(VolumeFrame { file: file.map(name), fullest: files.fullest().map(name), gap })
 }
 
-/// First and last frame of the time line: `time.range`, else the frames that the sequences of
-/// `volumes` have on the disk. `None` for a scene that does not change.
-pub fn time_range(volumes: &[VolumeSettings], time: &TimeSettings) -> Option<[i32; 2]> {
+/// First and last frame of the time line: `time.range`, else the frames that the sequences have on
+/// the disk and those from the first to the last key of the camera. `None` for a scene that does
+/// not change.
+pub fn time_range(settings: &Settings) -> Option<[i32; 2]> {
     let of_volume = |volume: &VolumeSettings| {
         // A folder that cannot be read is reported where the scene is built.
         let (_, files) = listed(volume.file.as_deref()?).ok()??;
         let range = volume.frame_range.unwrap_or_else(|| files.range());
         Some(range.map(|frame| frame.saturating_sub(volume.frame_offset)))
     };
-    let on_disk = volumes.iter().filter_map(of_volume);
-    time.range.or_else(|| on_disk.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]))
+    let on_disk = settings.volume.iter().filter_map(of_volume);
+    let all = on_disk.chain(settings.camera.key_range());
+    settings.time.range.or_else(|| all.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]))
 }
