@@ -3,6 +3,8 @@
 
 #[path = "vdb/grids.rs"]
 mod grids;
+#[path = "volumes_of_scenes/level_sets.rs"]
+mod level_sets;
 #[path = "volumes_of_scenes/odd_files.rs"]
 mod odd_files;
 #[path = "volumes_of_scenes/velocities.rs"]
@@ -179,7 +181,15 @@ fn grids_that_are_not_there_are_answered_with_those_that_are() {
         let mut settings = of_file(file);
         settings.volume[0].density.grid = Some("ls_sphere".into());
         let message = build_error(&settings);
-        assert!(message.contains("level set") && message.contains("fog volume"), "{message}");
+        assert!(
+            message.contains("level set") && message.contains("density.level_set"),
+            "{message}"
+        );
+        settings.volume[0].density.level_set = true;
+        let built = scene::assemble(&settings, &VolumeCache::default(), NO_PROGRESS).unwrap().world;
+        let volume = built.instances()[0].volume();
+        let center = volume.region().bounds().center();
+        assert_eq!(volume.properties().mu_t(center).x, 1.0, "a tile inside");
     }
     if let Some(file) = shared("peers/flame.vdb") {
         let mut settings = of_file(file);

@@ -16,6 +16,9 @@ use crate::volume::file::{Directory, GridInfo};
 use crate::volume::grid::{GridClass, IndexBox, SparseGrid, VoxelValues};
 use crate::volume::{Taper, Volume};
 
+/// Part of the progress that reading a level set takes; the rest is its fog.
+const READING: f32 = 0.7;
+
 /// Volume files and the volumes built from them, shared by everything that builds scenes.
 #[derive(Default)]
 pub struct VolumeCache {
@@ -49,6 +52,8 @@ pub struct VolumeFile {
     stamp: Option<Stamp>,
     directory: Directory,
     grids: Mutex<Vec<Option<VoxelValues>>>,
+    /// The fogs of level sets, by the places of the grids in the directory.
+    fogs: Mutex<HashMap<usize, Arc<SparseGrid<f32>>>>,
 }
 
 /// Time and size of a file, which tell whether it has changed.
@@ -117,7 +122,8 @@ impl VolumeCache {
             None => Directory::open(path_of(name), progress)?,
         };
         let grids = Mutex::new(vec![None; directory.grids.len()]);
-        let file = Arc::new(VolumeFile { name: name.to_owned(), stamp, directory, grids });
+        let (name_of_file, fogs) = (name.to_owned(), Mutex::default());
+        let file = Arc::new(VolumeFile { name: name_of_file, stamp, directory, grids, fogs });
         locked(&self.files).insert(name.to_owned(), file.clone());
         Ok(file)
     }
@@ -199,7 +205,9 @@ impl VolumeFile {
             VoxelValues::Vec3(grid) => grid.stats().memory_bytes,
             VoxelValues::Unsupported(_) => 0,
         };
-        locked(&self.grids).iter().flatten().map(bytes).sum()
+        let grids: usize = locked(&self.grids).iter().flatten().map(bytes).sum();
+        let fogs: usize = locked(&self.fogs).values().map(|fog| fog.stats().memory_bytes).sum();
+        grids + fogs
     }
 
     /// Directory of the file: its grids without their voxels.
@@ -218,10 +226,7 @@ impl VolumeFile {
     /// There is none (`field` is the key that asked for it), it cannot be read, or it is of a type
     /// that holds no values to render.
     pub fn grid(&self, name: &str, field: &str, progress: Progress) -> Result<PlacedGrid> {
-        let Some(index) = grid_address::find(self.grid_names(), name) else {
-            return Err(Error::invalid(&self.name, field, self.no_such_grid(name)));
-        };
-        self.grid_at(index, field, progress)
+        self.grid_at(self.index_of(name, field)?, field, progress)
     }
 
     /// The grid at `index` of the directory; as [`VolumeFile::grid`].
@@ -260,6 +265,47 @@ impl VolumeFile {
             return Err(Error::unsupported(&self.name, field, reason));
         }
         Ok(grid)
+    }
+
+    /// The fog of a level set: as [`VolumeFile::grid`], with the values of
+    /// [`SparseGrid::fog_of_level_set`].
+    ///
+    /// # Errors
+    /// As [`VolumeFile::grid`]; or the grid is no level set, or one without an inside.
+    pub fn fog(&self, name: &str, field: &str, progress: Progress) -> Result<PlacedGrid> {
+        let index = self.index_of(name, field)?;
+        let grid = self.grid_at(index, field, &|part| progress(READING * part))?;
+        let refused = |reason: &str| {
+            let reason = format!("the grid \"{name}\" cannot be read as a level set: {reason}");
+            Error::invalid(&self.name, field, reason)
+        };
+        let distances = match (&grid.values, grid.class) {
+            (GridValues::Vector(_), _) => return Err(refused("it holds vectors")),
+            (_, class @ (GridClass::FogVolume | GridClass::Staggered)) => {
+                return Err(refused(&format!("its class is {class}; leave out level_set")));
+            }
+            (GridValues::Float(distances), _) => distances,
+        };
+        let known = locked(&self.fogs).get(&index).cloned();
+        let fog = match known {
+            Some(fog) => fog,
+            None => {
+                let rest = |part: f32| progress(READING + (1.0 - READING) * part);
+                let made = distances.fog_of_level_set(&rest).map_err(|error| match error {
+                    Error::Invalid { reason, .. } => refused(&reason),
+                    other => other,
+                });
+                let fog = Arc::new(made?);
+                locked(&self.fogs).insert(index, fog.clone());
+                fog
+            }
+        };
+        Ok(PlacedGrid { values: GridValues::Float(fog), class: GridClass::FogVolume, ..grid })
+    }
+
+    fn index_of(&self, name: &str, field: &str) -> Result<usize> {
+        let found = grid_address::find(self.grid_names(), name);
+        found.ok_or_else(|| Error::invalid(&self.name, field, self.no_such_grid(name)))
     }
 
     /// Address of the grid at `index`, by which [`VolumeFile::grid`] finds it.

@@ -9,7 +9,7 @@ use super::sequence::NumberedSet;
 use crate::error::{Error, Progress, Result};
 use crate::files::name_of;
 use crate::volume::file::GridInfo;
-use crate::volume::grid::Histogram;
+use crate::volume::grid::{GridClass, Histogram};
 
 /// A volume file in words and numbers.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -62,6 +62,11 @@ pub struct VoxelDescription {
 }
 
 impl GridDescription {
+    /// Whether the values are distances to a surface.
+    pub fn is_level_set(&self) -> bool {
+        self.class == GridClass::LevelSet.to_string()
+    }
+
     /// Whether a scene names the grid by `address`.
     pub fn is_called(&self, address: &str) -> bool {
         grid_address::is_same(&self.name, address)

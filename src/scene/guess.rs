@@ -130,7 +130,7 @@ fn one_volume_each(
         volume.name = nth_name(name, n);
         match address(density, n) {
             Some(grid) => volume.density.grid = Some(grid),
-            None => volume.density = DensitySettings { grid: None, scale: Color::Gray(0.0) },
+            None => volume.density = invisible(),
         }
         match address(emission, n) {
             Some(grid) => volume.emission.grid = Some(grid),
@@ -204,7 +204,7 @@ fn density_settings(
 ) -> DensitySettings {
     let Some(first) = density.first() else {
         notes.push(Note::new(About::Density, "no density grid, only fire"));
-        return DensitySettings { grid: None, scale: Color::Gray(0.0) };
+        return invisible();
     };
     let depths = columns(density, bounds, axis, |value| value.x.max(0.0));
     let scale = quantile(&depths, FAIRLY).map_or(1.0, |depth| two_digits(wanted_depth / depth));
@@ -220,7 +220,16 @@ fn density_settings(
         );
         notes.push(Note::new(About::Density, text));
     }
-    DensitySettings { grid: Some(name.clone()), scale: Color::Gray(scale) }
+    DensitySettings {
+        grid: Some(name.clone()),
+        scale: Color::Gray(scale),
+        ..DensitySettings::default()
+    }
+}
+
+/// The density of a volume of which only the emission is seen.
+fn invisible() -> DensitySettings {
+    DensitySettings { scale: Color::Gray(0.0), ..DensitySettings::default() }
 }
 
 /// A little from above and from one side.

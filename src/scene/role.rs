@@ -36,18 +36,23 @@ impl Role {
         }
     }
 
-    /// Whether a grid can have the role: grids of numbers can be anything, colors only emission.
+    /// Whether a grid can have the role: grids of numbers can be anything, colors only emission,
+    /// level sets only density.
     pub fn suits(self, grid: &GridDescription) -> bool {
-        let fits = |is_vector: bool| self == Self::Emission || !is_vector;
-        grid.class != "level set" && grid.voxels.is_some_and(|voxels| fits(voxels.is_vector))
+        let fits = |is_vector: bool| match is_vector {
+            true => self == Self::Emission && !grid.is_level_set(),
+            false => self == Self::Density || !grid.is_level_set(),
+        };
+        grid.voxels.is_some_and(|voxels| fits(voxels.is_vector))
     }
 
-    /// The grid whose name fits the role best.
+    /// The grid whose name fits the role best; a level set never does.
     pub fn best_of(self, grids: &[GridDescription]) -> Option<&GridDescription> {
         let rank = |grid: &&GridDescription| {
             self.names().iter().position(|name| grid.name.eq_ignore_ascii_case(name))
         };
-        let named = grids.iter().filter(|grid| self.suits(grid) && rank(grid).is_some());
+        let usable = grids.iter().filter(|grid| self.suits(grid) && !grid.is_level_set());
+        let named = usable.filter(|grid| rank(grid).is_some());
         named.min_by_key(rank)
     }
 
@@ -80,6 +85,7 @@ impl Role {
     pub fn give(self, volume: &mut VolumeSettings, grid: &GridDescription) {
         let Some(mode) = self.mode() else {
             volume.density.grid = Some(grid.name.clone());
+            volume.density.level_set = grid.is_level_set();
             if volume.density.scale.is_black() {
                 volume.density.scale = Color::Gray(visible_scale(grid));
             }
@@ -108,7 +114,9 @@ fn visible_scale(grid: &GridDescription) -> f32 {
     let depth = grid.voxels.and_then(|voxels| {
         let [low, high] = voxels.bounds?;
         let edges = std::iter::zip(low, high).map(|(low, high)| high - low);
-        Some(edges.fold(f64::INFINITY, f64::min) as f32 * voxels.mean)
+        // The fog of a level set is 1 but near its surface.
+        let mean = if grid.is_level_set() { 1.0 } else { voxels.mean };
+        Some(edges.fold(f64::INFINITY, f64::min) as f32 * mean)
     });
     depth.filter(|depth| *depth > 0.0).map_or(1.0, |depth| two_digits(DEPTH / depth))
 }

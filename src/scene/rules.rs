@@ -84,6 +84,9 @@ fn volume(volume: &VolumeSettings) -> Result<(), Fault> {
     if volume.frame_range.is_some_and(|[first, last]| first > last) {
         return fault("frame_range", "the first frame comes after the last");
     }
+    if volume.density.level_set && volume.file.is_none() {
+        return fault("density.level_set", "a shape is no level set; only a grid of a file is");
+    }
     placement(volume)?;
     velocity(volume)?;
     if volume.shape == Some(VolumeShape::Everywhere) {

@@ -25,6 +25,7 @@ mod histogram;
 mod index;
 mod index_box;
 mod leaf;
+mod level_set;
 mod mass;
 mod node;
 mod parts;

@@ -10,6 +10,8 @@ mod crop;
 mod diagnostics;
 mod display;
 mod film;
+#[path = "../vdb/grids.rs"]
+mod grids;
 mod keeping;
 mod lights;
 mod looks;

@@ -183,3 +183,31 @@ fn find(window: &mut Window, text: &str) {
     window.harness.step();
     window.settle();
 }
+
+/// A level set is not used unless that is asked for, by a click here.
+#[test]
+fn a_level_set_becomes_fog_by_a_click() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("body.vdb");
+    let voxels = |value| grids::ball(glam::IVec3::ZERO, 4, value);
+    let surface = grids::Grid {
+        class: "level set",
+        background: 0.2,
+        ..grids::Grid::fog("surface", voxels(-0.1))
+    };
+    std::fs::write(&path, grids::file(&[surface, grids::Grid::fog("density", voxels(1.0))]))
+        .unwrap();
+    let Some(mut window) = Window::start(folder, &path) else { return };
+    window.until_it_says("surface as density");
+    assert_eq!(volume(&window).density_grid(), "density");
+    assert!(!window.has("surface as emission"));
+    window.click(Role::Button, "surface as density");
+    assert!(volume(&window).density.level_set && volume(&window).density_grid() == "surface");
+    until_accepted(&mut window);
+    let built = window.app().live_render().built().unwrap().scene.clone();
+    let properties = built.world.instances()[0].volume().properties();
+    assert_eq!(properties.mu_t(glam::Vec3A::ZERO).x, 0.5 * properties.density_scale.x);
+    window.click(Role::Button, "density as density");
+    assert!(!volume(&window).density.level_set);
+    until_accepted(&mut window);
+}

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use glam::{DVec3, IVec3};
 
-/// A grid of active voxels over a background of zero.
+/// A grid of active voxels over a background.
 #[derive(Clone)]
 pub struct Grid {
     pub name: &'static str,
@@ -13,6 +13,9 @@ pub struct Grid {
     /// Type of the values, as in `Tree_float_5_4_3`.
     pub kind: &'static str,
     pub voxels: Vec<(IVec3, f32)>,
+    /// Inactive tiles of 8 voxels a side by their first voxels, in the lower nodes of the voxels.
+    pub tiles: Vec<(IVec3, f32)>,
+    pub background: f32,
     /// What the components of a vector have for each unit of a voxel's value.
     pub components: [f32; 3],
     pub voxel_size: f64,
@@ -24,9 +27,18 @@ pub struct Grid {
 impl Grid {
     /// A fog volume of voxels 0.1 a side.
     pub fn fog(name: &'static str, voxels: Vec<(IVec3, f32)>) -> Self {
-        let (class, kind) = ("fog volume", "float");
-        let (components, translation) = ([1.0; 3], DVec3::ZERO);
-        Self { name, class, kind, voxels, components, voxel_size: 0.1, translation, frustum: None }
+        Self {
+            name,
+            class: "fog volume",
+            kind: "float",
+            voxels,
+            tiles: Vec::new(),
+            background: 0.0,
+            components: [1.0; 3],
+            voxel_size: 0.1,
+            translation: DVec3::ZERO,
+            frustum: None,
+        }
     }
 }
 
@@ -97,15 +109,17 @@ fn tree(grid: &Grid, bytes: &mut Bytes) {
         leaf.insert(place(voxel.to_array(), 3, 0), value);
     }
     bytes.u32(1);
-    bytes.value(grid, 0.0);
+    bytes.value(grid, grid.background);
     bytes.u32(0);
     bytes.u32(tree.len() as u32);
     let mut values = Bytes(Vec::new());
     for (origin, lowers) in &tree {
         origin.iter().for_each(|c| bytes.0.extend(c.to_le_bytes()));
         bytes.node(32 * 32 * 32, lowers.keys().map(|&child| place(child, 5, 7)));
-        for leaves in lowers.values() {
+        bytes.0.push(0);
+        for (&lower, leaves) in lowers {
             bytes.node(16 * 16 * 16, leaves.keys().map(|&child| place(child, 4, 3)));
+            bytes.tiles(grid, lower);
             for voxels in leaves.values() {
                 bytes.mask(512, voxels.keys().copied());
                 values.mask(512, voxels.keys().copied());
@@ -126,11 +140,25 @@ fn place(position: [i32; 3], places: i32, voxels: i32) -> usize {
 struct Bytes(Vec<u8>);
 
 impl Bytes {
-    /// An internal node without tiles.
+    /// The masks of an internal node without active tiles.
     fn node(&mut self, places: usize, children: impl Iterator<Item = usize>) {
         self.mask(places, children);
         self.mask(places, std::iter::empty());
-        self.0.push(0);
+    }
+
+    /// The values of the lower node that starts at a voxel, each written where there are tiles.
+    fn tiles(&mut self, grid: &Grid, lower: [i32; 3]) {
+        let is_in = |origin: IVec3| ((origin >> 7_i32) << 7_i32).to_array() == lower;
+        let mut values = vec![grid.background; 16 * 16 * 16];
+        for (origin, value) in grid.tiles.iter().filter(|(origin, _)| is_in(*origin)) {
+            values[place(origin.to_array(), 4, 3)] = *value;
+        }
+        if values.iter().all(|value| *value == grid.background) {
+            self.0.push(0);
+            return;
+        }
+        self.0.push(6);
+        values.into_iter().for_each(|value| self.value(grid, value));
     }
 
     fn mask(&mut self, bits: usize, on: impl Iterator<Item = usize>) {

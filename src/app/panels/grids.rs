@@ -132,7 +132,11 @@ fn roles<'n>(
         ui.spacing_mut().button_padding = vec2(5.0, 0.0);
         ui.spacing_mut().interact_size.y = space::ROW_HEIGHT - 3.0;
         for role in Role::ALL.into_iter().filter(|role| role.suits(grid)) {
-            let (text, help) = words(role);
+            let (text, mut help) = words(role);
+            if grid.is_level_set() {
+                help = "Use the inside of this level set as the smoke density: fog that rises from \
+                        0 at the surface to 1 inside.";
+            }
             let text = RichText::new(text).small();
             let button = Button::selectable(role.is_of(volume, &grid.name), text);
             let response = ui.add(button.frame_when_inactive(true)).on_hover_text(help);

@@ -44,20 +44,31 @@ pub(super) enum VolumeSource<'a> {
 }
 
 impl<'a> VolumeSource<'a> {
+    /// The density: a grid of single numbers, or the fog of a level set; `field` is the key that
+    /// names the grid.
+    pub(super) fn density(
+        &mut self,
+        settings: &VolumeSettings,
+        field: &str,
+    ) -> Result<ScalarField> {
+        let name = settings.density_grid();
+        match self {
+            Self::Grids(grids) if settings.density.level_set => {
+                let found = grids.find_fog(name, field)?;
+                grids.scalar(found, name, field)
+            }
+            _ => self.scalar(name, field),
+        }
+    }
+
     /// The values of a grid of single numbers; `field` is the key that names the grid.
     pub(super) fn scalar(&mut self, grid: &str, field: &str) -> Result<ScalarField> {
         match self {
             Self::Shape(shape) => shape.scalar(grid, field),
-            Self::Grids(grids) => match grids.place(grid, field)? {
-                None => Ok(ScalarField::Constant(0.0)),
-                Some((GridValues::Float(values), from_local, taper)) => {
-                    Ok(ScalarField::Grid(GridField::new(values, from_local, taper.as_ref())))
-                }
-                Some((GridValues::Vector(_), ..)) => {
-                    let reason = format!("the grid \"{grid}\" holds vectors; name one of numbers");
-                    Err(Error::invalid(grids.file.name(), field, reason))
-                }
-            },
+            Self::Grids(grids) => {
+                let found = grids.find(grid, field)?;
+                grids.scalar(found, grid, field)
+            }
         }
     }
 
@@ -66,7 +77,7 @@ impl<'a> VolumeSource<'a> {
         let gray = |values| RgbField::Tinted(values, Rgb::ONE);
         match self {
             Self::Shape(shape) => shape.scalar(grid, field).map(gray),
-            Self::Grids(grids) => Ok(match grids.place(grid, field)? {
+            Self::Grids(grids) => Ok(match grids.find(grid, field)?.map(|g| grids.place(g)) {
                 None => RgbField::Constant(Rgb::ZERO),
                 Some((GridValues::Float(values), from_local, taper)) => {
                     gray(ScalarField::Grid(GridField::new(values, from_local, taper.as_ref())))
@@ -110,19 +121,32 @@ impl<'a> GridSource<'a> {
         self.voxel.is_finite().then_some(self.voxel)
     }
 
-    /// The values of a grid, and the transform to its index space from the volume's own; `None` for
-    /// a grid that the file lacks and that counts as zero.
-    fn place(
+    /// The values of a grid of single numbers that was `found`; zero without one.
+    fn scalar(
         &mut self,
+        found: Option<PlacedGrid>,
         name: &str,
         field: &str,
-    ) -> Result<Option<(GridValues, Affine3A, Option<Taper>)>> {
-        let Some(grid) = self.find(name, field)? else { return Ok(None) };
+    ) -> Result<ScalarField> {
+        match found.map(|grid| self.place(grid)) {
+            None => Ok(ScalarField::Constant(0.0)),
+            Some((GridValues::Float(values), from_local, taper)) => {
+                Ok(ScalarField::Grid(GridField::new(values, from_local, taper.as_ref())))
+            }
+            Some((GridValues::Vector(_), ..)) => {
+                let reason = format!("the grid \"{name}\" holds vectors; name one of numbers");
+                Err(Error::invalid(self.file.name(), field, reason))
+            }
+        }
+    }
+
+    /// The values of a grid, and the transform to its index space from the volume's own.
+    fn place(&mut self, grid: PlacedGrid) -> (GridValues, Affine3A, Option<Taper>) {
         let local_from_grid = self.local_from_grid(&grid);
         self.voxel = self.voxel.min(shortest_edge(&local_from_grid));
         let local_from_grid = local_from_grid.as_affine3a();
         self.bounds = self.bounds.union(&support(&grid).transformed(&local_from_grid));
-        Ok(Some((grid.values, local_from_grid.inverse(), grid.taper)))
+        (grid.values, local_from_grid.inverse(), grid.taper)
     }
 
     /// Transform from the index space of a grid, of a frustum its spread space, to the volume's
@@ -134,20 +158,40 @@ impl<'a> GridSource<'a> {
 
     /// A grid of the file; `None` for one that it lacks and that counts as zero.
     pub(super) fn find(&mut self, name: &str, field: &str) -> Result<Option<PlacedGrid>> {
-        if (self.lacks)(name)? {
-            let (file, grid) = (self.file.name().to_owned(), name.to_owned());
-            self.gaps.push(Gap::Grid { file, grid });
+        if self.is_gap(name)? {
             return Ok(None);
         }
         let grid = self.file.grid(name, field, self.progress)?;
         if grid.class == GridClass::LevelSet {
-            let reason = format!(
-                "the grid \"{name}\" is a level set, distances to a surface; convert it to a fog \
-                 volume before exporting it"
-            );
+            let help = match field.strip_suffix(".density.grid") {
+                Some(volume) => {
+                    format!("{volume}.density.level_set = true shows its inside as fog")
+                }
+                None => "convert it to a fog volume before exporting it".to_owned(),
+            };
+            let reason =
+                format!("the grid \"{name}\" is a level set, distances to a surface; {help}");
             return Err(Error::unsupported(self.file.name(), field, reason));
         }
         Ok(Some(grid))
+    }
+
+    /// The fog of a level set of the file; `None` for one that it lacks and that counts as zero.
+    fn find_fog(&mut self, name: &str, field: &str) -> Result<Option<PlacedGrid>> {
+        if self.is_gap(name)? {
+            return Ok(None);
+        }
+        self.file.fog(name, field, self.progress).map(Some)
+    }
+
+    /// Whether the file lacks a grid that counts as zero, which is remembered then.
+    fn is_gap(&mut self, name: &str) -> Result<bool> {
+        let is_gap = (self.lacks)(name)?;
+        if is_gap {
+            let (file, grid) = (self.file.name().to_owned(), name.to_owned());
+            self.gaps.push(Gap::Grid { file, grid });
+        }
+        Ok(is_gap)
     }
 
     /// Name of the file.

@@ -188,7 +188,7 @@ fn properties(
         || settings.emission.times_density()
         || settings.emission_grid().is_none();
     let density = match needs_density {
-        true => source.scalar(settings.density_grid(), &format!("{key}.density.grid"))?,
+        true => source.density(settings, &format!("{key}.density.grid"))?,
         false => ScalarField::Constant(0.0),
     };
     let albedo = match &settings.albedo {

@@ -69,6 +69,13 @@ fn candidate(
     if let Some(reason) = &info.unsupported {
         return Ok(Err(reason.clone()));
     }
+    if info.class == GridClass::LevelSet {
+        let address = toml::Value::String(file.address(index));
+        return Ok(Err(format!(
+            "a level set, distances to a surface; a scene shows its inside as fog with density = \
+             {{ grid = {address}, level_set = true }}"
+        )));
+    }
     if let Some(reason) = useless(info) {
         return Ok(Err(reason.to_owned()));
     }
@@ -82,9 +89,6 @@ fn candidate(
 /// Why a grid of that class and name is neither smoke nor fire, whatever its values.
 fn useless(info: &GridInfo) -> Option<&'static str> {
     match info.class {
-        GridClass::LevelSet => Some(
-            "a level set, distances to a surface; convert it to a fog volume before exporting it",
-        ),
         GridClass::Staggered => Some("a component of a staggered vector such as a velocity"),
         _ if is_other(&info.name) => Some("by its name it is neither smoke nor fire"),
         _ => None,

@@ -166,6 +166,12 @@ pub struct DensitySettings {
     /// second.
     #[schemars(extend("default" = "density"))]
     pub grid: Option<String>,
+    /// Whether the grid is a level set (signed distances to a surface, negative inside) that is
+    /// shown as fog: its value is 0 outside, rises from 0 at the surface to 1 at the largest
+    /// distance that is stored, and is 1 further inside.
+    #[schemars(extend("default" = false))]
+    #[serde(skip_serializing_if = "is_default")]
+    pub level_set: bool,
     /// Extinction per unit length = scale * value of the grid. 0 makes the smoke invisible.
     #[schemars(extend("unit" = "1/length"))]
     pub scale: Color,
@@ -183,7 +189,7 @@ pub struct PhaseSettings {
 
 impl Default for DensitySettings {
     fn default() -> Self {
-        Self { grid: None, scale: Color::Gray(1.0) }
+        Self { grid: None, level_set: false, scale: Color::Gray(1.0) }
     }
 }
 

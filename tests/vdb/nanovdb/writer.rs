@@ -112,7 +112,7 @@ impl Kind {
     }
 }
 
-/// What stands outside everything else.
+/// What stands outside everything else, unless a grid says otherwise.
 pub const BACKGROUND: f64 = 0.25;
 /// The active tile at (4096, 0, 0), 4096 voxels a side.
 pub const ROOT_TILE: f64 = 2.0;
@@ -153,6 +153,8 @@ pub struct Grid {
     /// The number of its type where that is to be another.
     pub type_number: u32,
     pub class: u32,
+    /// Value outside everything else.
+    pub background: f64,
     /// Minor version of 32.
     pub version: u32,
     pub with_root_tile: bool,
@@ -164,12 +166,21 @@ impl Grid {
     pub fn new(name: &str, kind: Kind) -> Self {
         let name = name.to_owned();
         let (type_number, version) = (kind.number(), version(32, 4));
-        Self { name, kind, type_number, class: 2, version, with_root_tile: true, magic: b'0' }
+        Self {
+            name,
+            kind,
+            type_number,
+            class: 2,
+            background: BACKGROUND,
+            version,
+            with_root_tile: true,
+            magic: b'0',
+        }
     }
 
     /// The grid as it is in memory, number `index` of `count`.
     pub fn bytes(&self, index: usize, count: usize) -> Vec<u8> {
-        let mut grid = Writer { kind: self.kind, bytes: vec![0; 736] };
+        let mut grid = Writer { kind: self.kind, background: self.background, bytes: vec![0; 736] };
         self.tree(&mut grid);
         let has_long_name = self.name.len() >= 256;
         let blind = grid.bytes.len();
@@ -221,7 +232,7 @@ impl Grid {
         }
         [1, 1, 2].iter().enumerate().for_each(|(n, &count)| grid.u32(672 + 32 + 4 * n, count));
         grid.u32(root + 24, entries as u32);
-        grid.value(root + p.root_background, BACKGROUND);
+        grid.value(root + p.root_background, self.background);
         let mut entry = root + p.root;
         for (n, x) in [-4096_i32, 0].into_iter().enumerate() {
             grid.u64(entry, u64::from(x as u32 >> 12) << 42);
@@ -254,6 +265,7 @@ pub fn version(major: u32, minor: u32) -> u32 {
 
 struct Writer {
     kind: Kind,
+    background: f64,
     bytes: Vec<u8>,
 }
 
@@ -287,7 +299,7 @@ impl Writer {
 
     /// A node with the background everywhere.
     fn node(&mut self, at: usize, places: usize, table: usize, place: usize) {
-        (0..places).for_each(|n| self.value(at + table + n * place, BACKGROUND));
+        (0..places).for_each(|n| self.value(at + table + n * place, self.background));
     }
 
     fn child(&mut self, node: usize, places: usize, place: usize, entry: usize, child: usize) {

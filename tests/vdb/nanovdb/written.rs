@@ -1,6 +1,7 @@
 //! Every type, codec and arrangement, and what is refused.
 
 use flambeau::error::{Error, NO_PROGRESS, Result};
+use flambeau::scene::{self, VolumeCache};
 use flambeau::volume::file::{self, Format};
 use flambeau::volume::grid::{GridClass, SparseGrid, Voxel, VoxelValues};
 use flambeau::volume::nvdb::Directory;
@@ -226,4 +227,25 @@ fn scenes_open_both_formats() {
     std::fs::write(&path, "no volume").unwrap();
     let message = flambeau::scene::load(path.to_str().unwrap()).unwrap_err().to_string();
     assert!(message.contains("(.vdb, .nvdb)"), "{message}");
+}
+
+#[test]
+fn a_level_set_is_shown_as_fog() {
+    let level_set = Grid { class: 1, background: 2.0, ..Grid::new("surface", Kind::Fp8) };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("surface.nvdb");
+    std::fs::write(&path, buffer(&[level_set])).unwrap();
+    let text = "[[volume]]\nfile = 'surface.nvdb'\n\
+                density = { grid = 'surface', level_set = true }";
+    let scene = scene::parse(text, "", folder.path(), &Default::default()).unwrap();
+    let built = scene::assemble(&scene, &VolumeCache::default(), NO_PROGRESS).unwrap();
+    let properties = built.world.instances()[0].volume().properties();
+    let density = |at: IVec3| properties.mu_t(at.as_vec3a()).x;
+    for offset in 0..512 {
+        let [x, y, z] = [offset >> 6, offset >> 3 & 7, offset & 7].map(|c| c as i32);
+        let depth = -leaf_value(Kind::Fp8, offset) as f32;
+        assert_eq!(density(IVec3::new(x - 8, y, z)), depth.clamp(0.0, 2.0) / 2.0);
+    }
+    assert_eq!(density(IVec3::new(-1, 7, 23)), 1.0, "an inactive tile inside");
+    assert_eq!(density(IVec3::new(0, 0, 128)), 0.0, "an active tile outside");
 }
