@@ -184,8 +184,9 @@ impl Command {
             C::SaveFlipbook => (
                 CTRL_ALT,
                 Key::P,
-                "Save flipbook as PNGs…",
-                "Save the frames of the flipbook as displayed, each as a PNG with its number.",
+                "Save flipbook…",
+                "Save the frames of the flipbook, each to a file with its number: PNGs as displayed, \
+                 or EXRs with linear light.",
             ),
             C::NextFrame => (PLAIN, Key::Period, "Next frame", "Go on one frame of a sequence."),
             C::FrameVolume => (

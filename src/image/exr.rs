@@ -8,8 +8,8 @@ use exr::block::UncompressedBlock;
 use exr::block::reader::{ChunksReader, Reader};
 use exr::meta::header::Header as Part;
 use exr::prelude::{
-    AnyChannel, AnyChannels, Compression, Encoding, FlatSamples, Image, Layer, LineOrder, MetaData,
-    SampleType, SmallVec, Vec2, WritableImage,
+    AnyChannel, AnyChannels, Compression, Encoding, FlatSamples, Image, Layer, LayerAttributes,
+    LineOrder, MetaData, SampleType, SmallVec, Vec2, WritableImage,
 };
 use glam::UVec2;
 
@@ -54,13 +54,42 @@ pub fn write(path: &Path, film: &Film, header: &SnapshotHeader) -> Result<()> {
     let channels: SmallVec<[_; 4]> = std::iter::zip(&names, planes)
         .map(|(name, plane)| AnyChannel::new(name.as_str(), FlatSamples::F32(plane)))
         .collect();
+    write_channels(path, size, attributes(film, header)?, channels)
+}
+
+/// Writes a picture alone, linear RGBA with row 0 on top, as floats; no snapshot to go on from.
+///
+/// # Errors
+/// When the pixels are not as many as `size` says, or the system refuses to write.
+pub fn write_picture(path: &Path, size: UVec2, pixels: &[[f32; 4]]) -> Result<()> {
+    if (size.x as usize).checked_mul(size.y as usize) != Some(pixels.len()) {
+        let reason = format!("{} pixels are no picture of {size}", pixels.len());
+        return Err(invalid(path, "", reason));
+    }
+    let channels: SmallVec<[_; 4]> = ["R", "G", "B", "A"]
+        .into_iter()
+        .enumerate()
+        .map(|(index, name)| {
+            let plane = pixels.iter().map(|pixel| pixel[index]).collect();
+            AnyChannel::new(name, FlatSamples::F32(plane))
+        })
+        .collect();
+    write_channels(path, size, LayerAttributes::default(), channels)
+}
+
+/// Writes channels with as many values as the picture has pixels.
+fn write_channels(
+    path: &Path,
+    size: UVec2,
+    attributes: LayerAttributes,
+    channels: SmallVec<[AnyChannel<FlatSamples>; 4]>,
+) -> Result<()> {
     let encoding = Encoding {
         compression: Compression::ZIP16,
         line_order: LineOrder::Increasing,
         ..Encoding::default()
     };
     let extent = (size.x as usize, size.y as usize);
-    let attributes = attributes(film, header)?;
     let layer = Layer::new(extent, attributes, encoding, AnyChannels::sort(channels));
     files::replace(path, |file| {
         Image::from_layer(layer)

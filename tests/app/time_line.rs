@@ -1,6 +1,7 @@
 //! The time line: sequences opened, scrubbed, stepped through and played from the flipbook.
 
 use egui_kittest::kittest::Queryable;
+use flambeau::image::reference::Reference;
 
 use super::*;
 
@@ -61,6 +62,14 @@ fn another_frame_is_no_edit() {
     assert_eq!(frame(&window), 1.0, "the frame that the edit was made at is 2");
 }
 
+fn until_saved_as_exr(window: &mut Window) {
+    window.until("the flipbook is saved", |app| {
+        let is_told = |notice: &Notice| notice.text.contains(".exr");
+        let told = app.notices().list().iter().find(|notice| is_told(notice));
+        told.is_some_and(|notice| notice.level == Level::Done)
+    });
+}
+
 #[test]
 fn frames_are_rendered_once_and_played_from_the_flipbook() {
     let Some(mut window) = window() else { return };
@@ -89,6 +98,19 @@ fn frames_are_rendered_once_and_played_from_the_flipbook() {
         assert_eq!(image::open(&file).unwrap().width() % 48, 0, "{}", file.display());
     }
 
+    window.press(Modifiers { alt: true, ..Modifiers::COMMAND }, Key::P);
+    let name = window.folder.path().join("torch.%04d.exr");
+    window.type_path(name.to_str().unwrap());
+    until_saved_as_exr(&mut window);
+    for frame in 1..=4 {
+        let file = window.folder.path().join(format!("torch.{frame:04}.exr"));
+        let read = Reference::load(&file).unwrap();
+        let kept = &window.app().time_line().flipbook.get(frame).unwrap()[0];
+        assert_eq!(read.size(), kept.size);
+        let is_same = |(read, kept): (&[f32; 4], &[f32; 4])| read[..3] == kept[..3];
+        assert!(std::iter::zip(read.pixels(), &kept.pixels).all(is_same), "frame {frame}");
+    }
+
     // An edit makes the pictures worthless; another exposure does not.
     window.press(Modifiers::NONE, Key::E);
     assert_eq!(window.app().time_line().flipbook.len(), 4);
@@ -114,6 +136,18 @@ fn both_sides_of_a_comparison_are_played() {
     window.until("all frames are in the flipbook", |app| app.time_line().flipbook.len() == 4);
     let pictures = |app: &App| app.time_line().flipbook.get(2).map(<[_]>::len);
     assert_eq!(pictures(window.app()), Some(2));
+
+    window.press(Modifiers { alt: true, ..Modifiers::COMMAND }, Key::P);
+    let name = window.folder.path().join("both.exr");
+    window.type_path(name.to_str().unwrap());
+    until_saved_as_exr(&mut window);
+    let read = Reference::load(&window.folder.path().join("both.0002.exr")).unwrap();
+    let sides = window.app().time_line().flipbook.get(2).unwrap();
+    let (width, middle) = (read.size().x as usize, read.size().x as usize / 2);
+    for (at, pixel) in read.pixels().iter().enumerate() {
+        let side = usize::from(at % width >= middle);
+        assert_eq!(pixel[..3], sides[side].pixels[at][..3], "of A on the left, of B on the right");
+    }
 }
 
 /// A file that is written again is read again, and a frame that is added joins the time line.

@@ -1,5 +1,6 @@
 //! Choosing and writing files, all off the window's thread.
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc;
 use std::time::{Duration, Instant};
@@ -45,23 +46,27 @@ impl Purpose {
         matches!(self, Self::Open | Self::Reference)
     }
 
-    /// The ending of what is saved; none for what is read.
-    pub fn extension(self) -> Option<&'static str> {
+    /// The endings that what is saved may have, the usual one first; none for what is read.
+    pub fn extensions(self) -> &'static [&'static str] {
         match self {
-            Self::Open | Self::Reference => None,
-            Self::SaveExr => Some("exr"),
-            Self::SavePng | Self::SaveComparison | Self::SaveFlipbook => Some("png"),
-            Self::SaveScene => Some("toml"),
+            Self::Open | Self::Reference => &[],
+            Self::SaveExr => &["exr"],
+            Self::SavePng | Self::SaveComparison => &["png"],
+            Self::SaveFlipbook => &["png", "exr"],
+            Self::SaveScene => &["toml"],
         }
     }
 
-    /// `path` with the ending that belongs to it, which tells what is in it; of a folder the file
+    /// `path` with an ending that belongs to it, which tells what is in it; of a folder the file
     /// called `name` there.
     pub fn complete(self, path: PathBuf, name: &Path) -> PathBuf {
-        let Some(extension) = self.extension() else { return path };
+        let Some(usual) = self.extensions().first() else { return path };
         let mut path = if path.is_dir() { path.join(name) } else { path };
-        if !path.extension().is_some_and(|present| present.eq_ignore_ascii_case(extension)) {
-            path.as_mut_os_string().push(format!(".{extension}"));
+        let belongs = |present: &OsStr| {
+            self.extensions().iter().any(|known| present.eq_ignore_ascii_case(known))
+        };
+        if !path.extension().is_some_and(belongs) {
+            path.as_mut_os_string().push(format!(".{usual}"));
         }
         path
     }
@@ -153,9 +158,8 @@ fn describe(purpose: Purpose, suggested: &Path) -> rfd::FileDialog {
             return dialog.add_filter("Converged pictures", &["exr", "npy"]);
         }
         Purpose::SaveExr => dialog.add_filter("OpenEXR", &["exr"]),
-        Purpose::SavePng | Purpose::SaveComparison | Purpose::SaveFlipbook => {
-            dialog.add_filter("PNG", &["png"])
-        }
+        Purpose::SavePng | Purpose::SaveComparison => dialog.add_filter("PNG", &["png"]),
+        Purpose::SaveFlipbook => dialog.add_filter("PNG", &["png"]).add_filter("OpenEXR", &["exr"]),
         Purpose::SaveScene => dialog.add_filter("Scene", &["toml"]),
     }
     .set_file_name(suggested.file_name().unwrap_or_default().to_string_lossy())
@@ -192,6 +196,9 @@ mod tests {
         assert_eq!(of(Purpose::SaveExr, "a/b"), "a/b.exr");
         assert_eq!(of(Purpose::SavePng, "a/b.PNG"), "a/b.PNG");
         assert_eq!(of(Purpose::SavePng, "a/b.png2"), "a/b.png2.png");
+        assert_eq!(of(Purpose::SavePng, "a/b.exr"), "a/b.exr.png");
+        assert_eq!(of(Purpose::SaveFlipbook, "a/b.####.EXR"), "a/b.####.EXR");
+        assert_eq!(of(Purpose::SaveFlipbook, "a/b"), "a/b.png");
         assert_eq!(of(Purpose::SaveScene, "shot.v2"), "shot.v2.toml");
         assert_eq!(of(Purpose::Open, "a/b"), "a/b");
         let folder = tempfile::tempdir().unwrap();

@@ -123,9 +123,11 @@ impl PathBar {
             Purpose::SavePng => ("Save PNG as", "path of the .png", "Save"),
             Purpose::SaveScene => ("Save scene as", "path of the .toml", "Save"),
             Purpose::Reference => ("Reference", "path of an .exr or .npy", "Load"),
-            Purpose::SaveFlipbook => {
-                ("Save flipbook as", "path with #### for the frame, such as fire.####.png", "Save")
-            }
+            Purpose::SaveFlipbook => (
+                "Save flipbook as",
+                "path with #### for the frame, such as fire.####.png or fire.####.exr",
+                "Save",
+            ),
             Purpose::SaveComparison => ("Save comparison as", "path of the .png", "Save"),
         };
         ui.horizontal(|ui| {

@@ -13,6 +13,7 @@ use crate::app::ui::widgets::significant;
 use crate::error::{Error, Result};
 use crate::image::export;
 use crate::image::export::{Export, FigureTable, Pane};
+use crate::image::exr;
 use crate::image::legend;
 use crate::image::ramp;
 use crate::image::tone::Tone;
@@ -37,11 +38,18 @@ pub struct SavedView {
 }
 
 impl SavedView {
-    /// Writes the view as a PNG.
+    /// Writes the view: to a file that ends in `.exr` its linear light, else a PNG as shown.
     ///
     /// # Errors
-    /// When there is no picture, or the system refuses to write.
+    /// When there is no picture, or none of light for an EXR, or the system refuses to write.
     pub fn write(self, path: &Path) -> Result<()> {
+        match path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("exr")) {
+            true => self.write_linear(path),
+            false => self.write_shown(path),
+        }
+    }
+
+    fn write_shown(self, path: &Path) -> Result<()> {
         let panes = self.panes();
         if panes.is_empty() {
             let name = path.display().to_string();
@@ -57,6 +65,34 @@ impl SavedView {
         });
         let export = Export { panes, legend, words: self.words, tables: self.tables };
         export::write(path, &export)
+    }
+
+    /// Writes the light before exposure; that of pictures beside each other without a gap.
+    fn write_linear(&self, path: &Path) -> Result<()> {
+        let refuse = |reason| Err(Error::invalid(path.display().to_string(), "", reason));
+        let (pictures, look, column) = match &self.shown {
+            Shown::Nothing => return refuse("there is no picture to save yet"),
+            Shown::One(picture, look) => (vec![picture], look, None),
+            Shown::Wipe([a, b], look, share) if a.size == b.size => {
+                (vec![a, b], look, Some((share * a.size.x as f32).round() as usize))
+            }
+            Shown::Wipe([a, b], look, _) | Shown::Beside([a, b], look) => (vec![a, b], look, None),
+        };
+        let lights: Option<Vec<_>> = pictures.iter().map(|one| light_of(one, *look)).collect();
+        let Some(lights) = lights else {
+            return refuse("a map has no light; save it as a PNG, or show the picture");
+        };
+        let size = pictures.first().map_or(UVec2::ZERO, |first| first.size);
+        if pictures.iter().any(|one| one.size != size) {
+            return refuse("both sides must have the same size");
+        }
+        match (&lights[..], column) {
+            ([a, b], Some(column)) => exr::write_picture(path, size, &wiped(a, b, size, column)),
+            ([a, b], None) => {
+                exr::write_picture(path, size * UVec2::new(2, 1), &beside(a, b, size))
+            }
+            _ => exr::write_picture(path, size, lights.first().copied().unwrap_or_default()),
+        }
     }
 
     /// The pictures, those of a wipe as one.
@@ -91,6 +127,30 @@ impl SavedView {
         let region: Option<[UVec2; 2]> = self.area.map(|area| [area.first, area.first + area.size]);
         Pane { size: picture.size, codes: codes(picture, look), names, divider: None, region }
     }
+}
+
+/// The light that a picture shows; `None` of a map of numbers.
+fn light_of(picture: &Picture, look: Look) -> Option<&[[f32; 4]]> {
+    match look {
+        Look::Picture(_) => Some(&picture.pixels),
+        Look::Light(_) => Some(&picture.layer.light),
+        Look::Numbers(_) => None,
+    }
+}
+
+/// The first columns of `a` and the others of `b`.
+fn wiped(a: &[[f32; 4]], b: &[[f32; 4]], size: UVec2, column: usize) -> Vec<[f32; 4]> {
+    let width = (size.x as usize).max(1);
+    let column = column.min(width);
+    let lines = std::iter::zip(a.chunks_exact(width), b.chunks_exact(width));
+    lines.flat_map(|(a, b)| [&a[..column], &b[column..]].concat()).collect()
+}
+
+/// `a` with `b` to its right.
+fn beside(a: &[[f32; 4]], b: &[[f32; 4]], size: UVec2) -> Vec<[f32; 4]> {
+    let width = (size.x as usize).max(1);
+    let lines = std::iter::zip(a.chunks_exact(width), b.chunks_exact(width));
+    lines.flat_map(|(a, b)| [a, b].concat()).collect()
 }
 
 /// The pixels of a picture as the screen shows them, as 8-bit sRGB.

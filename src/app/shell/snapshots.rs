@@ -128,7 +128,7 @@ impl App {
 
     /// The name to suggest for a file of what is to be saved.
     pub(super) fn suggested_name(&self, purpose: Purpose) -> PathBuf {
-        let extension = purpose.extension().unwrap_or_default();
+        let extension = purpose.extensions().first().copied().unwrap_or_default();
         match self.subject() {
             // Not as an extension: a name may hold dots, and what would be folders.
             Some(item) => {
