@@ -16,6 +16,7 @@ mod keeping;
 mod lights;
 mod looks;
 mod reference;
+mod scene_file;
 mod snapshots;
 mod start;
 mod story;

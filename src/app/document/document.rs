@@ -157,6 +157,14 @@ impl Editor {
         self.name = None;
     }
 
+    /// Puts `settings` in place of those of the document, as an edit, and has those `of_file` be
+    /// what was opened.
+    pub fn reload(&mut self, settings: Settings, of_file: &Settings) {
+        self.document.settings = settings;
+        self.opened.settings.clone_from(of_file);
+        self.name_edit("reload of the scene");
+    }
+
     /// The document as it was opened: what a double click on a setting goes back to.
     pub fn opened(&self) -> &Document {
         &self.opened

@@ -33,7 +33,8 @@ struct Shared {
 #[derive(Default)]
 struct State {
     watched: Vec<Watched>,
-    has_changed: bool,
+    /// Those that have changed since somebody asked.
+    changed: Vec<PathBuf>,
     ends: bool,
 }
 
@@ -91,9 +92,18 @@ impl FileWatch {
         state.watched = watched.collect();
     }
 
-    /// Whether anything has changed since the last time this was asked.
-    pub fn has_changed(&self) -> bool {
-        std::mem::take(&mut self.shared.state().has_changed)
+    /// Takes a file as it is now for known, since it was written from here.
+    pub fn know(&self, path: &Path) {
+        let now = stamp(path);
+        let mut state = self.shared.state();
+        for watched in state.watched.iter_mut().filter(|watched| watched.path == path) {
+            (watched.known, watched.last) = (now, now);
+        }
+    }
+
+    /// The files and folders that have changed since the last time this was asked.
+    pub fn changed(&self) -> Vec<PathBuf> {
+        std::mem::take(&mut self.shared.state().changed)
     }
 }
 
@@ -127,12 +137,14 @@ fn watch(shared: &Shared, wake: &dyn Fn()) {
         drop(state);
         let stamps: Vec<Stamp> = paths.iter().map(|path| stamp(path)).collect();
         let mut state = shared.state();
-        let mut has_changed = false;
-        for (path, now) in std::iter::zip(&paths, stamps) {
-            let watched = state.watched.iter_mut().find(|watched| watched.path == *path);
-            has_changed |= watched.is_some_and(|watched| watched.look(now));
+        let before = state.changed.len();
+        for (path, now) in std::iter::zip(paths, stamps) {
+            let watched = state.watched.iter_mut().find(|watched| watched.path == path);
+            if watched.is_some_and(|watched| watched.look(now)) {
+                state.changed.push(path);
+            }
         }
-        state.has_changed |= has_changed;
+        let has_changed = state.changed.len() > before;
         drop(state);
         if has_changed {
             wake();

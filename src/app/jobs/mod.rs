@@ -5,7 +5,7 @@
 //! - `probe_placer`: starts renders and places their probes meanwhile.
 //! - `mailbox`: one message to a thread, the latest wins; `background`: one value made anew
 //!   whenever what it is made from changes.
-//! - `file_watch`: whether files of the scene have changed.
+//! - `file_watch`: whether files of the scene have changed; `scene_reader`: reads its own again.
 //! - `dialogs`, `film_file`: choosing files, and films on their way into them.
 
 pub mod background;
@@ -18,3 +18,4 @@ pub mod mailbox;
 pub mod probe_placer;
 pub mod reopen;
 pub mod scene_loader;
+pub mod scene_reader;

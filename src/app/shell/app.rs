@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use egui::Context;
 
+use super::changed_scene::ChangedScene;
 use super::chrome::Chrome;
 use super::file_requests::FileRequests;
 use super::frame_stats::FrameStats;
@@ -66,6 +67,7 @@ pub struct App {
     pub(super) notices: Notices,
     pub(super) opened: Opened,
     pub(super) unsaved: UnsavedChanges,
+    pub(super) changed_scene: ChangedScene,
     pub(super) files: FileRequests,
     pub(super) file_watch: FileWatch,
     pub(super) chrome: Chrome,
@@ -117,6 +119,7 @@ impl App {
             notices: Notices::default(),
             opened: Opened { source, notes: Vec::new() },
             unsaved: UnsavedChanges::default(),
+            changed_scene: ChangedScene::default(),
             files: FileRequests::new(options.dialogs),
             file_watch: FileWatch::new(move || woken.request_repaint())?,
             chrome: Chrome::new(ctx, &preferences, is_plain, options.cleared),

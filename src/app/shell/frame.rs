@@ -27,6 +27,7 @@ impl App {
         self.save_waiting(&ctx);
         self.update_snapshots(&ctx);
         self.editor.begin_frame(&ctx);
+        self.take_changed_scene();
         self.update_time_line(&ctx);
         let mut commands = Command::pressed(&ctx);
         if self.is_asking() {
@@ -108,7 +109,7 @@ impl App {
             ctx.request_repaint_after(wait.max(Duration::from_millis(1)));
         }
         self.take_in(ctx, news);
-        self.reload_changed_files();
+        self.reload_changed_files(ctx);
         self.update_measures(ctx);
         self.update_sweep(ctx);
     }

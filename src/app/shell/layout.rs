@@ -118,6 +118,7 @@ impl App {
         self.dropped_row(ui);
         self.progress_row(ui);
         self.unsaved_row(ui);
+        self.changed_scene_row(ui);
         self.sweep_row(ui);
         if !self.chrome.full_screen {
             self.measure_rows(ui);

@@ -5,7 +5,8 @@
 //! - `execute`: commands; `menu`, `palette`, `help`: lists of them.
 //! - `bars`, `unsaved_bar`, `start`, `status`: rows that come and go, and the status line.
 //! - `paths`, `file_requests`, `save`, `export`, `opened`: choosing, opening and writing files.
-//! - `guard`, `unsaved`: no change of the scene is lost unasked.
+//! - `guard`, `unsaved`: no change of the scene is lost unasked; `changed_scene`, `reload`: its
+//!   file was written again.
 //! - `measures`, `snapshots`, `sweep`, `time_line`, `view`: where the window meets those features.
 //! - `preferences`: what the window keeps between runs, and where.
 //! - `frame_stats`: what the window costs (`FLAMBEAU_FRAME_STATS=FILE`).
@@ -13,6 +14,7 @@
 mod app;
 mod bars;
 mod camera;
+mod changed_scene;
 mod chrome;
 mod compare;
 mod execute;
@@ -31,6 +33,7 @@ mod pace;
 mod palette;
 mod paths;
 mod preferences;
+mod reload;
 mod save;
 mod snapshots;
 mod start;

@@ -20,6 +20,7 @@ impl App {
                 News::Opened { source, settings, notes, reopened } => {
                     self.opened.notes = notes;
                     self.unsaved.opened(&source, &settings);
+                    self.changed_scene.forget();
                     self.gizmo = Gizmo::default();
                     self.editor.open(*settings, reopened.is_some());
                     self.viewport.zoom = Default::default();
@@ -66,6 +67,11 @@ impl App {
         }
         for (path, result) in self.files.saver.poll() {
             self.unsaved.written(&path, result.is_ok());
+            let scene = std::path::absolute(&path).ok().filter(|_| result.is_ok());
+            if let Some(scene) = scene.filter(|path| self.scene_file().as_ref() == Some(path)) {
+                self.file_watch.know(&scene);
+                self.changed_scene.forget();
+            }
             match result {
                 Ok(()) => self.notices.done(format!("Saved {}", path.display())),
                 Err(error) => self.notices.failed(error.to_string()),
@@ -88,7 +94,7 @@ impl App {
         }
     }
 
-    /// Watches the files that the scene reads, and the folders of its sequences.
+    /// Watches the file of the scene, those that it reads, and the folders of its sequences.
     fn watch_files(&mut self) {
         let settings = &self.editor.document.settings;
         // What cannot be listed is reported where the scene is built.
@@ -96,12 +102,18 @@ impl App {
         let sequences = settings.volume.iter().filter_map(|volume| volume.file.as_deref());
         let folders = sequences.filter_map(Pattern::spelled).map(|set| set.folder().to_owned());
         paths.extend(folders);
+        paths.extend(self.scene_file());
         self.file_watch.watch(paths);
     }
 
     /// Reads files of the scene again that have changed on the disk, with the look as it is.
-    pub(super) fn reload_changed_files(&mut self) {
-        if self.file_watch.has_changed() {
+    pub(super) fn reload_changed_files(&mut self, ctx: &Context) {
+        let mut changed = self.file_watch.changed();
+        if let Some(scene) = self.scene_file().filter(|scene| changed.contains(scene)) {
+            changed.retain(|path| *path != scene);
+            self.read_scene_again(ctx, &scene);
+        }
+        if !changed.is_empty() {
             self.time_line.look_again();
             self.live_render.reload();
             self.compare.second_side.reload();

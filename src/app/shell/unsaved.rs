@@ -56,6 +56,29 @@ impl UnsavedChanges {
         }
     }
 
+    /// Whether `settings` are those that were opened or saved last.
+    pub(super) fn is_saved(&self, settings: &Settings) -> bool {
+        self.saved == *settings
+    }
+
+    /// The scene's file has these settings now.
+    pub(super) fn changed_on_disk(&mut self, settings: Settings) {
+        self.saved = settings;
+    }
+
+    /// The settings of the scene's file as it is now, with the `present` strategy and frame where
+    /// the file does not change them, since one tries them on and off all the time.
+    pub(super) fn reloaded(&self, of_file: &Settings, present: &Settings) -> Settings {
+        let mut settings = of_file.clone();
+        if settings.strategy == self.saved.strategy {
+            settings.strategy = present.strategy;
+        }
+        if settings.time.frame == self.saved.time.frame {
+            settings.time.frame = present.time.frame;
+        }
+        settings
+    }
+
     /// Whether `settings` have changes that no file has. Strategies are tried on and off all the
     /// time and change no picture, and a film that follows the window has no size of its own.
     /// Moving the camera in an embedded scene, or in a bare volume, is no change to save yet, nor
