@@ -122,8 +122,9 @@ impl Command {
                 CTRL,
                 Key::O,
                 "Open…",
-                "Open a scene (.toml) or a volume (.vdb, .nvdb), or resume a snapshot (.exr). \
-                 Files can also be dropped on the window.",
+                "Open a scene (.toml) or a volume (.vdb, .nvdb), or resume a snapshot (.exr). A \
+                 file of a numbered set opens the sequence. Files and folders can also be dropped \
+                 on the window.",
             ),
             C::OpenPath => (
                 CTRL,

@@ -20,7 +20,8 @@ use crate::volume::file::GridInfo;
 
 #[derive(Debug, clap::Args)]
 pub struct Arguments {
-    /// A volume, a snapshot (.exr), a scene (.toml) or `builtin:NAME`.
+    /// A volume (.vdb, .nvdb), a folder or pattern (fire_####.vdb) of numbered ones, a snapshot
+    /// (.exr), a scene (.toml) or `builtin:NAME`.
     #[arg(value_name = "FILE", value_parser = file_name())]
     file: String,
     /// Tells of a volume as JSON: its grids with type, class, transform, bounds and statistics.

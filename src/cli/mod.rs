@@ -44,8 +44,9 @@ use crate::error::Error;
 struct Arguments {
     #[command(subcommand)]
     command: Option<Command>,
-    /// A scene file, a volume, a snapshot (.exr) to go on from, or `builtin:NAME` to open in the
-    /// window; without one the default scene.
+    /// A scene file (.toml), a volume (.vdb, .nvdb), a folder or pattern (fire_####.vdb) of
+    /// numbered ones, a snapshot (.exr) to go on from, or `builtin:NAME` to open in the window;
+    /// without one the default scene.
     #[arg(value_name = "SCENE|VOLUME", value_parser = values::file_name())]
     scene: Option<String>,
 }

@@ -16,7 +16,8 @@ use crate::transport::strategy::Preset;
 /// Arguments that name a scene and change it.
 #[derive(Debug, Args)]
 pub struct SceneArguments {
-    /// A scene file, a volume or `builtin:NAME`.
+    /// A scene file (.toml), a volume (.vdb, .nvdb), a folder or pattern (fire_####.vdb) of
+    /// numbered ones, or `builtin:NAME`.
     #[arg(value_name = "SCENE|VOLUME", value_parser = file_name())]
     scene: String,
     /// Sampling strategies: baseline, emission or full.

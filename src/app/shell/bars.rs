@@ -117,7 +117,9 @@ impl PathBar {
     fn line(&mut self, ui: &mut Ui) -> Typed {
         let (label, hint, confirm) = match self.purpose {
             Purpose::Open => {
-                ("Open", "path of a .toml, .vdb, .nvdb or .exr, or builtin:NAME", "Open")
+                let hint = "path of a .toml, .vdb, .nvdb or .exr, a folder of numbered volumes, or \
+                            builtin:NAME";
+                ("Open", hint, "Open")
             }
             Purpose::SaveExr => ("Save EXR as", "path of the .exr", "Save"),
             Purpose::SavePng => ("Save PNG as", "path of the .png", "Save"),

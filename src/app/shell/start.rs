@@ -124,8 +124,8 @@ fn head(ui: &mut Ui, again: &mut bool, choice: &mut Option<StartChoice>) {
             ui.checkbox(again, "Show at start")
                 .on_hover_text("Show this row whenever Flambeau starts without a file.");
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
-                let text = "Drag the picture to orbit, drop a .vdb to open it. 1 to 5 switch \
-                            strategies, C compares, F1 lists keys.";
+                let text = "Drag the picture to orbit, drop a .vdb or .nvdb to open it. 1 to 5 \
+                            switch strategies, C compares, F1 lists keys.";
                 ui.add(Label::new(RichText::new(text).color(color::TEXT_DIM)).truncate());
             });
         });
