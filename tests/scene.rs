@@ -192,8 +192,8 @@ const MALFORMED: &[(&str, &[&str])] = &[
     ("[[volume]]\nshape = 'sphere'\nradius = 0", &["volume.0.radius:", "> 0"]),
     ("[[volume]]\nshape = 'box'\nscale = 0", &["volume.0.scale:", "not 0"]),
     ("[[volume]]\nshape = 'box'\nalbedo = 1.5", &["volume.0.albedo:", "0..1"]),
-    ("[time]\nshutter = 1.5", &["time.shutter:", "0..1"]),
-    ("[time]\nshutter = -0.5", &["time.shutter:", "0..1"]),
+    ("[time]\nshutter = 10.5", &["time.shutter:", "0..10"]),
+    ("[time]\nshutter = -0.5", &["time.shutter:", "0..10"]),
     ("[[volume]]\nshape = 'box'\nvelocity.grid = 'v'", &["volume.0.velocity:", "only a file"]),
     (
         "[[volume]]\nfile = 'a.vdb'\nvelocity.unit = 'frame'",

@@ -21,7 +21,7 @@ pub use emission::{EmissionMode, EmissionSettings, Normalize};
 pub use film::{EnvironmentSettings, FilmSettings, MAX_SEED, PathSettings};
 pub use light::{LightKind, LightSettings};
 pub use surface::{MaterialKind, MaterialSettings, SurfaceSettings, SurfaceShape};
-pub use time::{MAX_FRAME, TimeSettings};
+pub use time::{MAX_FRAME, MAX_SHUTTER, TimeSettings};
 pub use values::{Albedo, Axis, Color, Extent, GridKey};
 pub use velocity::{VelocitySettings, VelocityUnit};
 pub use volume::{DensitySettings, Outside, PhaseSettings, RampKind, VolumeSettings, VolumeShape};

@@ -8,7 +8,7 @@ use crate::app::document::Document;
 use crate::app::ui::theme::space;
 use crate::app::ui::widgets::{Number, finite, is_reset, key_help, row, row_label, segments};
 use crate::scene::keys;
-use crate::scene::settings::{FilmSettings, MAX_FRAME, TimeSettings};
+use crate::scene::settings::{FilmSettings, MAX_FRAME, MAX_SHUTTER, TimeSettings};
 
 /// Shows the section. `window` is the size that the film takes from the window, `largest` the
 /// most that the graphics card can show a side.
@@ -145,14 +145,14 @@ fn frame_rows(
         let number = Number {
             name: "Shutter",
             key: "time.shutter",
-            soft: 0.0..=1.0,
+            soft: 0.0..=2.0,
             logarithmic: false,
             unit: " frames",
             reset,
         };
         let mut shutter = time.shutter as f32;
         if number.show(ui, &mut shutter) {
-            time.shutter = f64::from(shutter).clamp(0.0, 1.0);
+            time.shutter = f64::from(shutter).clamp(0.0, MAX_SHUTTER);
             edit = Some("shutter");
         }
     }

@@ -6,6 +6,9 @@ use serde::{Deserialize, Serialize};
 /// The largest number of a frame.
 pub const MAX_FRAME: i32 = 9_999_999;
 
+/// The largest number of frames that the shutter is open.
+pub const MAX_SHUTTER: f64 = 10.0;
+
 /// Frames: which one is rendered, and those of the time line.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
@@ -21,9 +24,9 @@ pub struct TimeSettings {
     #[schemars(extend("unit" = "frames", "default" = null))]
     #[schemars(extend("minimum" = -MAX_FRAME, "maximum" = MAX_FRAME))]
     pub range: Option<[i32; 2]>,
-    /// The fraction of a frame that the shutter is open, centered on the frame. Volumes with a
-    /// velocity are blurred by their motion; 0 shows them at one moment.
-    #[schemars(extend("unit" = "frames"), range(min = 0.0, max = 1.0))]
+    /// The number of frames that the shutter is open, centered on the frame: 0.5 are 180 degrees.
+    /// Volumes with a velocity are blurred by their motion; 0 shows them at one moment.
+    #[schemars(extend("unit" = "frames"), range(min = 0.0, max = MAX_SHUTTER))]
     pub shutter: f64,
 }
 
