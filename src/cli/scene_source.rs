@@ -7,7 +7,7 @@ use super::console::warn;
 use super::exit::Refusal;
 use super::values::{file_name, parse_frame, parse_size, quoted};
 use crate::error::{Error, Progress, Result};
-use crate::scene::sequence::{Gap, volume_frame};
+use crate::scene::sequence::{Gap, Listings, volume_frame};
 use crate::scene::settings::{MAX_SEED, TimeSettings};
 use crate::scene::{self, Overrides, Settings, VolumeCache};
 use crate::transport::Scene;
@@ -70,8 +70,9 @@ impl SceneArguments {
         if self.allow_missing {
             return Ok(());
         }
+        let mut listings = Listings::default();
         for volume in &settings.volume {
-            let frame = volume_frame(volume, &settings.time)?;
+            let frame = volume_frame(volume, &settings.time, &mut listings)?;
             let Some(Gap::Frame { file, frame, held }) = frame.gap else { continue };
             let instead = match held {
                 Some(held) => format!("renders frame {held}"),

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::files::BUILTIN;
-use super::sequence::volume_frame;
+use super::sequence::{Listings, volume_frame};
 use super::{Settings, embedded};
 use crate::error::{Progress, Result};
 use crate::files::{Fingerprint, path_of};
@@ -42,6 +42,8 @@ pub fn volume_files(settings: &Settings) -> Result<Vec<PathBuf>> {
 
 /// The names of the files that the volumes show in the scene's frame.
 fn frame_files(settings: &Settings) -> Result<Vec<String>> {
-    let frames = settings.volume.iter().map(|volume| volume_frame(volume, &settings.time));
+    let mut listings = Listings::default();
+    let frame_of = |volume| volume_frame(volume, &settings.time, &mut listings);
+    let frames = settings.volume.iter().map(frame_of);
     frames.filter_map(|frame| frame.map(|frame| frame.file).transpose()).collect()
 }

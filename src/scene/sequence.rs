@@ -8,4 +8,4 @@ mod volume_frame;
 pub use frames::{FrameFile, Frames, FramesOnDisk, Shown};
 pub use numbered_set::NumberedSet;
 pub use pattern::Pattern;
-pub use volume_frame::{Gap, VolumeFrame, listed, time_range, volume_frame};
+pub use volume_frame::{Gap, Listings, VolumeFrame, time_range, volume_frame};

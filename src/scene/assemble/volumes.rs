@@ -14,7 +14,7 @@ use crate::math::Rgb;
 use crate::scene::VolumeCache;
 use crate::scene::cache::{BuiltVolume, VolumeFile};
 use crate::scene::effect::emits;
-use crate::scene::sequence::{Gap, VolumeFrame, volume_frame};
+use crate::scene::sequence::{Gap, Listings, VolumeFrame, volume_frame};
 use crate::scene::settings::{
     Albedo, EmissionMode, Extent, Normalize, Outside, TimeSettings, VolumeSettings,
 };
@@ -36,13 +36,14 @@ pub(super) fn instances(
 ) -> Result<(Vec<Instance>, Vec<Gap>)> {
     let count = volumes.len().max(1) as f32;
     let (mut instances, mut gaps) = (Vec::new(), Vec::new());
+    let mut listings = Listings::default();
     for (index, settings) in volumes.iter().enumerate() {
         let part = |fraction: f32| progress((index as f32 + fraction) / count);
         if !part(0.0) {
             return Err(Error::Cancelled);
         }
         let key = format!("volume.{index}");
-        let frame = volume_frame(settings, time)?;
+        let frame = volume_frame(settings, time, &mut listings)?;
         let time = time_in_motion(settings, time);
         let built = built((settings, time), &frame, &key, cache, &part)?;
         gaps.extend(frame.gap);

@@ -53,19 +53,21 @@ impl FramesOnDisk {
     /// # Errors
     /// The folder cannot be read, or there is no such file in it.
     pub fn of(pattern: &Pattern) -> Result<Self> {
-        let folder = match pattern.folder() {
-            folder if folder.as_os_str().is_empty() => Path::new("."),
-            folder => folder,
-        };
+        Self::of_paths(pattern, &paths_in(pattern.folder())?)
+    }
+
+    /// The files of `pattern` among the `paths` of its folder.
+    ///
+    /// # Errors
+    /// There is none.
+    pub(super) fn of_paths(pattern: &Pattern, paths: &[PathBuf]) -> Result<Self> {
         let mut files = Vec::new();
-        for entry in std::fs::read_dir(folder).map_err(|e| Error::io(folder, e))? {
-            let entry = entry.map_err(|e| Error::io(folder, e))?;
-            let number = entry.file_name().to_str().and_then(|name| pattern.number_of(name));
-            let Some(number) = number else { continue };
+        for path in paths {
+            let Some(number) = pattern.number_of_path(path) else { continue };
             // Through links, and without what is gone in the meantime.
-            let Ok(metadata) = std::fs::metadata(entry.path()) else { continue };
+            let Ok(metadata) = std::fs::metadata(path) else { continue };
             if metadata.is_file() {
-                files.push(FrameFile { number, path: entry.path(), bytes: metadata.len() });
+                files.push(FrameFile { number, path: path.clone(), bytes: metadata.len() });
             }
         }
         if files.is_empty() {
@@ -126,6 +128,17 @@ impl FramesOnDisk {
         let after = self.files.partition_point(|file| file.number <= number);
         after.checked_sub(1).and_then(|index| self.files.get(index))
     }
+}
+
+/// Paths of all that is in a folder.
+///
+/// # Errors
+/// The folder cannot be read.
+pub(super) fn paths_in(folder: &Path) -> Result<Vec<PathBuf>> {
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let failed = |error| Error::io(folder, error);
+    let entries = std::fs::read_dir(folder).map_err(failed)?;
+    entries.map(|entry| entry.map(|entry| entry.path()).map_err(failed)).collect()
 }
 
 impl<'a> Frames<'a> {

@@ -1,7 +1,11 @@
 //! The file that a volume shows in a frame.
 
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::fmt;
+use std::path::PathBuf;
 
+use super::frames::paths_in;
 use super::{Frames, FramesOnDisk, Pattern, Shown};
 use crate::error::Result;
 use crate::files::name_of;
@@ -70,26 +74,53 @@ impl Gap {
     }
 }
 
-/// The frames that lie on the disk if `file` is the pattern of a sequence, `None` for other names.
-///
-/// # Errors
-/// The folder cannot be read or has no file of that pattern.
-pub fn listed(file: &str) -> Result<Option<(Pattern, FramesOnDisk)>> {
-    let Some(pattern) = Pattern::spelled(file) else { return Ok(None) };
-    let files = FramesOnDisk::of(&pattern)?;
-    Ok(Some((pattern, files)))
+/// The sequences of several volumes as they are on the disk: each folder is listed once, so that
+/// what is changed there in the meantime is not seen.
+#[derive(Debug, Default)]
+pub struct Listings {
+    folders: HashMap<PathBuf, Vec<PathBuf>>,
+    sets: HashMap<String, Option<(Pattern, FramesOnDisk)>>,
+}
+
+impl Listings {
+    /// The frames that lie on the disk if `file` is the pattern of a sequence, `None` for other
+    /// names.
+    ///
+    /// # Errors
+    /// The folder cannot be read or has no file of that pattern.
+    pub fn listed(&mut self, file: &str) -> Result<Option<&(Pattern, FramesOnDisk)>> {
+        if !self.sets.contains_key(file) {
+            let set = match Pattern::spelled(file) {
+                None => None,
+                Some(pattern) => {
+                    let paths = match self.folders.entry(pattern.folder().to_owned()) {
+                        Entry::Occupied(known) => known.into_mut(),
+                        Entry::Vacant(place) => place.insert(paths_in(pattern.folder())?),
+                    };
+                    let files = FramesOnDisk::of_paths(&pattern, paths)?;
+                    Some((pattern, files))
+                }
+            };
+            self.sets.insert(file.to_owned(), set);
+        }
+        Ok(self.sets.get(file).and_then(Option::as_ref))
+    }
 }
 
 /// The file that `volume` shows at `time`.
 ///
 /// # Errors
-/// As [`listed`].
-pub fn volume_frame(volume: &VolumeSettings, time: &TimeSettings) -> Result<VolumeFrame> {
+/// As [`Listings::listed`].
+pub fn volume_frame(
+    volume: &VolumeSettings,
+    time: &TimeSettings,
+    listings: &mut Listings,
+) -> Result<VolumeFrame> {
     let Some(name) = &volume.file else { return Ok(VolumeFrame::default()) };
-    let Some((pattern, files)) = listed(name)? else {
+    let Some((pattern, files)) = listings.listed(name)? else {
         return Ok(VolumeFrame { file: Some(name.clone()), ..VolumeFrame::default() });
     };
-    let frames = Frames { files: &files, range: volume.frame_range, outside: volume.outside };
+    let frames = Frames { files, range: volume.frame_range, outside: volume.outside };
     let missing =
         |frame, held| Some(Gap::Frame { file: name_of(&pattern.file(frame)), frame, held });
     let (file, gap) = match frames.at(time.whole_frame().saturating_add(volume.frame_offset)) {
@@ -106,9 +137,10 @@ pub fn volume_frame(volume: &VolumeSettings, time: &TimeSettings) -> Result<Volu
 /// the disk and those from the first to the last key of the camera. `None` for a scene that does
 /// not change.
 pub fn time_range(settings: &Settings) -> Option<[i32; 2]> {
+    let mut listings = Listings::default();
     let of_volume = |volume: &VolumeSettings| {
         // A folder that cannot be read is reported where the scene is built.
-        let (_, files) = listed(volume.file.as_deref()?).ok()??;
+        let (_, files) = listings.listed(volume.file.as_deref()?).ok()??;
         let range = volume.frame_range.unwrap_or_else(|| files.range());
         Some(range.map(|frame| frame.saturating_sub(volume.frame_offset)))
     };
