@@ -148,7 +148,7 @@ fn what_cannot_be_opened_is_named_with_the_mend() {
         ("no/such/scene.toml", &["no/such/scene.toml"][..]),
         ("no/such/smoke.vdb", &["no/such/smoke.vdb"]),
         ("picture.png", &["picture.png", ".toml", ".vdb"]),
-        ("builtin:nosuch", &["builtin:nosuch", "builtin:torch_hd"]),
+        ("builtin:nosuch", &["builtin:nosuch", "builtin:torch_hd", "scenes are builtin:torch,"]),
         (concat!(env!("CARGO_MANIFEST_DIR"), "/README.md"), &["README.md", ".toml"]),
     ] {
         let message = scene::load(source).unwrap_err().to_string();

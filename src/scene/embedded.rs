@@ -49,9 +49,15 @@ pub fn volume(file: &str) -> Result<Option<&'static [u8]>> {
     match VOLUMES.iter().find(|(known, _)| *known == name) {
         Some((_, bytes)) => Ok(Some(bytes)),
         None => {
-            let known: Vec<String> = VOLUMES.iter().map(|(n, _)| format!("{BUILTIN}{n}")).collect();
-            let reason =
-                format!("there is no such embedded volume; there are {}", known.join(", "));
+            let listed = |names: &mut dyn Iterator<Item = &str>| {
+                names.map(|name| format!("{BUILTIN}{name}")).collect::<Vec<_>>().join(", ")
+            };
+            let volumes = listed(&mut VOLUMES.iter().map(|(name, _)| *name));
+            let reason = format!(
+                "there is no embedded volume of that name; the volumes are {volumes}; the scenes \
+                 are {}",
+                listed(&mut scenes())
+            );
             Err(Error::invalid(file, "", reason))
         }
     }
