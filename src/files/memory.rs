@@ -6,8 +6,8 @@ use crate::format::mebibytes;
 pub(crate) fn reserve(length: usize) -> Result<Vec<u8>, String> {
     if let Some(available) = available().filter(|&available| length as u64 > available) {
         return Err(format!(
-            "{} of memory are needed and {} are free; close other programs or take a coarser \
-             volume",
+            "{} of memory are needed and {} are free; close other programs or take a smaller \
+             file",
             mebibytes(length),
             mebibytes(available as usize)
         ));

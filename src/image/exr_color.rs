@@ -8,9 +8,10 @@ use exr::block::lines::LineRef;
 use exr::block::reader::ChunksReader;
 use exr::meta::header::Header as Part;
 use exr::prelude::{SampleType, Vec2, f16};
-use glam::UVec2;
+use glam::{DVec2, UVec2};
 
 use super::exr::{exr_error, invalid, open};
+use super::primaries::Primaries;
 use crate::error::{Error, Result};
 
 /// A picture's size and its pixels, row 0 on top.
@@ -30,8 +31,7 @@ pub fn read(path: &Path) -> Result<Pixels> {
     let parts = reader.headers().iter().enumerate();
     let mut found = parts.filter_map(|(index, part)| Some((index, part, channels_of(part)?)));
     let Some((index, part, channels)) = found.next() else {
-        let reason = "it has no layer with channels R, G and B; write one, flat and not deep";
-        return Err(invalid(path, "R", reason));
+        return Err(no_color(path));
     };
     let mut target = BlockTarget::new(path, part, channels)?;
     let mut failure = None;
@@ -53,6 +53,29 @@ pub fn read(path: &Path) -> Result<Pixels> {
         (None, Err(error)) => Err(exr_error(path, error)),
         (None, Ok(())) => target.finish(),
     }
+}
+
+/// Size and chromaticities of the picture that [`read`] reads, without its pixels.
+///
+/// # Errors
+/// When the file cannot be read or is no EXR, or has no such layer.
+pub fn size_and_primaries(path: &Path) -> Result<(UVec2, Option<Primaries>)> {
+    let reader = open(path)?;
+    let part = reader.headers().iter().find(|part| channels_of(part).is_some());
+    let Some(part) = part else { return Err(no_color(path)) };
+    let Vec2(width, height) = part.layer_size;
+    let side = |length: usize| u32::try_from(length).unwrap_or(u32::MAX);
+    let primaries = part.shared_attributes.chromaticities.map(|found| {
+        let [r, g, b, white] = [found.red, found.green, found.blue, found.white]
+            .map(|Vec2(x, y)| DVec2::new(x.into(), y.into()));
+        Primaries { rgb: [r, g, b], white }
+    });
+    Ok((UVec2::new(side(width), side(height)), primaries))
+}
+
+fn no_color(path: &Path) -> Error {
+    let reason = "it has no layer with channels R, G and B; write one, flat and not deep";
+    invalid(path, "R", reason)
 }
 
 /// The indices of R, G and B among the channels of `part`.

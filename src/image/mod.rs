@@ -6,6 +6,8 @@
 //! - [`png`]: the picture as the screen shows it, through the curves of [`tone`].
 //! - [`ramp`]: colors of numbers; [`map`]: a number per pixel as a picture with its [`legend`].
 //! - [`plot`]: curves over time; [`bars`]: a bar chart; `log_axis`, `drawing`: axes and canvas.
+//! - [`panorama`]: pictures of everything around, of `.exr` or, by `radiance_hdr`, `.hdr` files;
+//!   `primaries`: their colors in Rec.709.
 //! - [`export`]: a view with its figures below.
 //! - [`metrics`]: errors of a picture against a [`reference`](mod@reference).
 
@@ -22,8 +24,11 @@ pub mod map;
 pub mod metrics;
 pub mod npy;
 mod npy_header;
+pub mod panorama;
 pub mod plot;
 pub mod png;
+mod primaries;
+mod radiance_hdr;
 pub mod ramp;
 pub mod reference;
 pub mod tone;
