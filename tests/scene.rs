@@ -2,13 +2,16 @@
 
 use std::path::Path;
 
+use flambeau::error::NO_PROGRESS;
 use flambeau::scene::settings::{
     Albedo, CameraKey, CameraSettings, Color, EmissionMode, Extent, GridKey, LightKind,
-    LightSettings, MaterialKind, MaterialSettings, Normalize, RampKind, SurfaceSettings,
-    SurfaceShape, VelocitySettings, VelocityUnit, VolumeSettings, VolumeShape,
+    LightSettings, MaterialKind, MaterialSettings, Normalize, RampKind, SkySettings,
+    SurfaceSettings, SurfaceShape, VelocitySettings, VelocityUnit, VolumeSettings, VolumeShape,
+    WorldUp,
 };
-use flambeau::scene::{self, Overrides, Settings, keys};
+use flambeau::scene::{self, Overrides, Settings, VolumeCache, keys};
 use flambeau::transport::strategy::{BoostMode, Preset};
+use glam::Vec3A;
 use rand::{Rng, RngExt, SeedableRng};
 
 fn parse(text: &str) -> flambeau::error::Result<Settings> {
@@ -177,7 +180,24 @@ const MALFORMED: &[(&str, &[&str])] = &[
     ("[environment]\nradiance = -1", &["environment.radiance:", ">= 0"]),
     ("[environment]\nradiance = [1, -1, 1]", &["environment.radiance.1:", ">= 0"]),
     ("[environment]\nradiance = 'red'", &["environment.radiance:", "number or [r, g, b]"]),
-    ("[environment]\nfile = 'sky.exr'", &["environment.file:", "not there yet"]),
+    ("[environment]\nsky = { sun_elevation = -5 }", &["environment.sky.sun_elevation:", "0..90"]),
+    ("[environment]\nsky = { turbidity = 0.5 }", &["environment.sky.turbidity:", "1..10"]),
+    ("[environment]\nsky = {}\nfile = 'a'", &["environment.sky:", "file or sky", "leave one"]),
+    ("[environment]\nfile = ''", &["environment.file:", "empty", ".hdr"]),
+    (
+        "[environment]\nfile = 'a.hdr'\ngradient = [1, 1, 1]",
+        &["environment.gradient:", "file or gradient", "leave one out"],
+    ),
+    ("[environment]\ngradient = [1, 2]", &["environment.gradient:", "bottom", "list of 2"]),
+    ("[environment]\ngradient = [1, -2, 1]", &["environment.gradient.1:", ">= 0"]),
+    ("[environment]\ngradient = [1, [0, 1], 1]", &["environment.gradient.1:", "[r, g, b]"]),
+    (
+        "[environment]\nradiance = 1\ngradient = [1, 1, 1]",
+        &["environment.gradient:", "radiance or gradient", "leave one out"],
+    ),
+    ("[environment]\nexposure = 99", &["environment.exposure:", "-32..32"]),
+    ("[environment]\ntint = -1", &["environment.tint:", ">= 0"]),
+    ("[scene]\nup = 'x'", &["scene.up:", "\"z\" | \"y\""]),
     ("[volume]\nshape = 'box'", &["volume:", "[[volume]]"]),
     ("[[volume]]", &["volume.0.file:", "needs a file or a shape"]),
     ("[[volume]]\nfile = 'a.vdb'\nshape = 'box'", &["volume.0.shape:", "not both"]),
@@ -371,6 +391,23 @@ fn set_reaches_every_key() {
 }
 
 #[test]
+fn the_sources_of_the_sky_replace_each_other() {
+    let text = "[environment]\nradiance = 1\nexposure = 2";
+    let with = |assignments: &[&str]| set(text, assignments).unwrap().environment;
+    let gradient = with(&["environment.gradient=[1, [1, 2, 3], 0]"]);
+    assert!(gradient.radiance.is_black() && gradient.exposure == 2.0);
+    assert_eq!(gradient.gradient.unwrap()[1], Color::Rgb([1.0, 2.0, 3.0]));
+    let image = with(&["environment.gradient=[1, 2, 3]", "environment.file=/a.hdr"]);
+    assert_eq!((image.file.as_deref(), image.gradient), (Some("/a.hdr"), None));
+    let sky = with(&["environment.file=/a.hdr", "environment.sky={ turbidity = 5 }"]);
+    assert_eq!((sky.file, sky.sky.unwrap().turbidity), (None, 5.0));
+    let even = with(&["environment.sky={}", "environment.radiance=3"]);
+    assert_eq!((even.sky, even.radiance), (None, Color::Gray(3.0)));
+    let both = set(text, &["environment.sky.turbidity=5"]).unwrap_err().to_string();
+    assert!(both.contains("environment.sky") && both.contains("leave one out"), "{both}");
+}
+
+#[test]
 fn a_new_choice_takes_the_keys_of_the_old_one_with_it() {
     let text =
         "[[volume]]\nshape = 'box'\nhalf_size = 2\nemission = { mode = 'constant', value = 3 }";
@@ -404,7 +441,7 @@ fn faulty_overrides_are_refused_by_name() {
         ("volume=3", &["--set: volume:", "[[volume]]"]),
         ("volume.0=3", &["--set: volume.0:", "expected table"]),
         ("strategy.preset=best", &["--set: strategy.preset:", "\"best\""]),
-        ("environment.rotation=30", &["environment.rotation:", "not there yet"]),
+        ("environment.group=sky", &["environment.group:", "not there yet"]),
         ("a.b.c=1", &["--set: a:", "unknown key"]),
         ("=1", &["--set:", "unknown key"]),
     ] {
@@ -453,13 +490,115 @@ fn saving_and_loading_loses_nothing() {
     assert!(saved > 200, "only {saved} generated settings were valid");
 }
 
+/// A picture of 8 x 4 pixels with a bright one, the first to the right of a quarter of the columns
+/// and just above the horizon.
+fn picture(folder: &Path) -> String {
+    let mut pixels = [[0_u8; 4]; 32];
+    pixels[8 + 2] = [128, 128, 128, 129];
+    let path = folder.join("a set.hdr");
+    let head = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 8\n";
+    std::fs::write(&path, [&head[..], &pixels.concat()].concat()).unwrap();
+    path.to_str().unwrap().to_owned()
+}
+
+/// The middle column looks along +z where +y is up and along −y where +z is up, the left quarter
+/// along +x; a rotation turns the picture counter-clockwise seen from above.
+#[test]
+fn pictures_of_the_sky_are_read_and_oriented_as_the_format_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let home = folder.path().canonicalize().unwrap();
+    picture(&home);
+    for (up, rotation, left_quarter) in [
+        ("z", 0.0, Vec3A::X),
+        ("y", 0.0, Vec3A::X),
+        ("z", 90.0, Vec3A::Y),
+        ("y", 90.0, Vec3A::NEG_Z),
+        ("z", -90.0, Vec3A::NEG_Y),
+    ] {
+        let text = format!(
+            "scene.up = '{up}'\n[environment]\nfile = 'a set.hdr'\nrotation = {rotation}\n\
+             exposure = 1\ntint = [1, 0.5, 0]"
+        );
+        let settings = scene::parse(&text, "s", &home, &Overrides::default()).unwrap();
+        let built = scene::assemble(&settings, &VolumeCache::default(), NO_PROGRESS).unwrap();
+        let environment = built.lights.environment();
+        // The pixel reaches an eighth of a turn to the right, and up.
+        assert!(environment.middle().dot(left_quarter) > 0.8, "{up} {rotation}");
+        let seen = environment.radiance(environment.middle());
+        assert!((seen - Vec3A::new(2.0, 1.0, 0.0)).abs().max_element() < 0.2, "{seen}");
+        assert_eq!(environment.radiance(-left_quarter), Vec3A::ZERO);
+    }
+}
+
+#[test]
+fn pictures_of_the_sky_are_files_of_the_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let home = folder.path().canonicalize().unwrap();
+    let file = picture(&home);
+    let text = "[environment]\nfile = 'a set.hdr'";
+    let settings = scene::parse(text, "s", &home, &Overrides::default()).unwrap();
+    assert_eq!(settings.environment.file.as_ref(), Some(&file));
+    assert_eq!(scene::files_on_disk(&settings).unwrap(), [Path::new(&file)]);
+    let before = scene::fingerprints(&settings, NO_PROGRESS).unwrap();
+    assert_eq!(before.len(), 1);
+    assert!(scene::to_toml(&settings, Some(&home)).unwrap().contains("file = \"a set.hdr\""));
+
+    // Values that are no radiance are counted and told.
+    let odd = home.join("odd.exr");
+    let value = |x: usize| if x == 2 { f32::NAN } else { x as f32 - 1.0 };
+    exr::prelude::write_rgb_file(&odd, 4, 2, |x, _| (value(x), 1.0_f32, 1.0_f32)).unwrap();
+    let mut edited = settings.clone();
+    edited.environment.file = odd.to_str().map(str::to_owned);
+    let built = scene::assemble_frame(&edited, &VolumeCache::default(), NO_PROGRESS).unwrap();
+    assert_eq!(built.gaps.len(), 1);
+    assert!(built.gaps[0].to_string().starts_with("4 of its pixels"), "{}", built.gaps[0]);
+    assert!(built.gaps[0].file().ends_with("odd.exr"));
+    std::fs::remove_file(&odd).unwrap();
+    let missing = scene::assemble(&edited, &VolumeCache::default(), NO_PROGRESS).unwrap_err();
+    assert!(missing.to_string().contains("odd.exr"), "{missing}");
+}
+
+/// The sun of a sky stands where its elevation and azimuth say, turned with the sky, and is seen
+/// unless the sky is hidden.
+#[test]
+fn the_sun_of_a_sky_stands_where_its_keys_say() {
+    let build = |text: &str| {
+        let settings = scene::parse(text, "s", Path::new("/"), &Overrides::default()).unwrap();
+        scene::assemble(&settings, &VolumeCache::default(), NO_PROGRESS).unwrap()
+    };
+    let seen = |text: &str, direction: Vec3A| {
+        build(text).lights.suns_behind(None, direction.normalize()).count()
+    };
+    let sky = "[environment]\nsky = { sun_elevation = 45, sun_azimuth = 90 }\n";
+    assert_eq!(seen(sky, Vec3A::new(1.0, 0.0, 1.0)), 1);
+    assert_eq!(seen(&format!("{sky}rotation = 90"), Vec3A::new(0.0, 1.0, 1.0)), 1);
+    assert_eq!(seen(&format!("scene.up = 'y'\n{sky}"), Vec3A::new(1.0, 1.0, 0.0)), 1);
+    assert_eq!(seen(&format!("{sky}visible = false"), Vec3A::new(1.0, 0.0, 1.0)), 0);
+    let without = sky.replace("90 }", "90, sun = false }");
+    assert_eq!(seen(&without, Vec3A::new(1.0, 0.0, 1.0)), 0);
+    assert!(!build(&without).lights.has_suns() && build(&without).lights.environment().varies());
+}
+
 fn any_settings(rng: &mut impl Rng, home: &Path) -> Settings {
     let mut settings = Settings { camera: any_camera(rng), ..Settings::default() };
     settings.film.size = [rng.random_range(1..16384), rng.random_range(1..16384)];
     settings.film.seed = rng.random_range(0..1 << 53);
     settings.film.spp = rng.random();
     settings.path.max_scatters = rng.random_range(0..=100_000);
-    settings.environment.radiance = color(rng);
+    match rng.random_range(0..4) {
+        2 => {
+            let sun_azimuth = rng.random_range(-90.0..90.0);
+            settings.environment.sky = Some(SkySettings { sun_azimuth, ..Default::default() });
+        }
+        0 => settings.environment.file = Some(home.join("a'b/set.hdr").to_str().unwrap().into()),
+        1 => settings.environment.radiance = color(rng),
+        _ => settings.environment.gradient = Some([0; 3].map(|_| color(rng))),
+    }
+    settings.environment.rotation = rng.random_range(-360.0..360.0);
+    settings.environment.exposure = rng.random_range(-9.0..9.0);
+    settings.environment.tint = color(rng);
+    settings.environment.visible = rng.random();
+    settings.scene.up = [WorldUp::Z, WorldUp::Y][rng.random_range(0..2)];
     settings.strategy.emission_decoupling = rng.random();
     settings.strategy.majorant_boost = rng.random();
     settings.strategy.advanced.boost_amount = rng.random_range(0.0..9.0);

@@ -30,16 +30,16 @@ impl<'a> Named<'a> {
     }
 }
 
-/// The files that the scene called `name` is read from: its own and those of its volumes. What is
-/// embedded in the program is none.
+/// The files that the scene called `name` is read from: its own, and those of its volumes and its
+/// environment. What is embedded in the program is none.
 ///
 /// # Errors
 /// The folder of a sequence cannot be read or has no frame.
 pub fn files_of_scene<'a>(name: &'a str, settings: &Settings) -> Result<Vec<Named<'a>>> {
     let own = scene::scene_file(name).map(|path| Named::new("the scene", path));
-    let volumes = scene::volume_files(settings)?;
-    let volumes = volumes.into_iter().map(|path| Named::new("a volume of the scene", path));
-    Ok(own.into_iter().chain(volumes).collect())
+    let read = scene::files_on_disk(settings)?;
+    let read = read.into_iter().map(|path| Named::new("a file of the scene", path));
+    Ok(own.into_iter().chain(read).collect())
 }
 
 /// Refuses to write a file over one that is read, or two to the same place, however their paths are

@@ -14,7 +14,7 @@ use crate::files::path_of;
 use crate::format::{in_steps, mebibytes};
 use crate::image::exr::{Info, read_info};
 use crate::scene::sequence::NumberedSet;
-use crate::scene::settings::{CameraSettings, VolumeSettings};
+use crate::scene::settings::{CameraSettings, EnvironmentSettings, VolumeSettings};
 use crate::scene::{self, GridDescription, Settings, VolumeCache};
 use crate::volume::file::GridInfo;
 
@@ -206,6 +206,21 @@ fn describe_camera(settings: &Settings) -> String {
     }
 }
 
+fn describe_environment(environment: &EnvironmentSettings) -> String {
+    if let Some(sky) = &environment.sky {
+        let turbidity = sky.turbidity;
+        return format!("clear sky of turbidity {turbidity}, sun {} degrees up", sky.sun_elevation);
+    }
+    match (&environment.file, &environment.gradient) {
+        (Some(file), _) => format!("picture {file}"),
+        (None, Some([bottom, horizon, top])) => {
+            let [bottom, horizon, top] = [bottom, horizon, top].map(plain);
+            format!("gradient from {bottom} below to {horizon} at the horizon and {top} above")
+        }
+        (None, None) => format!("radiance {}", plain(&environment.radiance)),
+    }
+}
+
 fn summary(settings: &Settings) -> String {
     let mut report = InfoText::default();
     let [width, height] = settings.film.size;
@@ -216,7 +231,7 @@ fn summary(settings: &Settings) -> String {
     };
     report.row("film", format!("{width} x {height} pixels, {spp}, seed {}", settings.film.seed));
     report.row("camera", describe_camera(settings));
-    report.row("environment", format!("radiance {}", plain(&settings.environment.radiance)));
+    report.row("environment", describe_environment(&settings.environment));
     for volume in &settings.volume {
         report.row("volume", describe_volume(volume));
     }

@@ -3,6 +3,7 @@
 use glam::{Vec2, Vec3A};
 
 use super::emitter::Emitter;
+use super::environment::Environment;
 use super::local::{Point, Spot};
 use super::sample::LightSample;
 use super::sun::Sun;
@@ -15,6 +16,8 @@ use crate::volume::world::World;
 pub enum Light {
     /// Parallel light.
     Sun(Sun),
+    /// An environment whose radiance varies over the directions.
+    Environment(Environment),
     /// All directions from a point.
     Point(Point),
     /// A cone from a point.
@@ -46,6 +49,10 @@ impl Light {
         let mut u = || Vec2::new(rng.at(Slot::LightX), rng.at(Slot::LightY));
         match self {
             Self::Sun(sun) => Some(sun.sample(u())),
+            // Picks among millions of texels.
+            Self::Environment(environment) => {
+                environment.sample([Slot::LightX, Slot::LightY].map(|slot| rng.at64(slot)))
+            }
             Self::Point(point) => point.sample(from),
             Self::Spot(spot) => spot.sample(from),
             Self::Surface { shape, radiance, .. } | Self::Invisible { shape, radiance } => {
@@ -63,10 +70,23 @@ impl Light {
         }
     }
 
-    /// Summary of the light for the hierarchy; `None` for a sun, which is infinitely far away.
+    /// The luminance of its irradiance across its own direction, and that direction, of a light
+    /// that is infinitely far away. For an environment it is a rough mean over receivers: half of
+    /// ∫ L dω, between what a medium scatters and what a plane receives on average.
+    pub(super) fn distant(&self) -> Option<(f32, Vec3A)> {
+        match self {
+            Self::Sun(sun) => Some((luminance(sun.irradiance()), sun.direction())),
+            Self::Environment(environment) => {
+                Some((0.5 * luminance(environment.fluence()), environment.middle()))
+            }
+            _ => None,
+        }
+    }
+
+    /// Summary of the light for the hierarchy; `None` for lights that are infinitely far away.
     pub(super) fn emitter(&self, world: &World) -> Option<Emitter> {
         match self {
-            Self::Sun(_) => None,
+            Self::Sun(_) | Self::Environment(_) => None,
             Self::Point(point) => Some(point.emitter()),
             Self::Spot(spot) => Some(spot.emitter()),
             Self::Surface { shape, radiance, .. } | Self::Invisible { shape, radiance } => {

@@ -5,19 +5,20 @@ use glam::Vec3A;
 
 use super::choice::{By, ChosenLight, LightChoice, LightGroup};
 use super::emitter::{Emitter, Receiver};
+use super::environment::Environment;
 use super::kinds::Light;
 use super::light_scores::LightScores;
 use super::selector::Selector;
 use super::sun::Sun;
-use crate::math::Rgb;
 use crate::surface::{Hit, Surface};
 use crate::volume::world::World;
 
 /// All lights of a scene.
 #[derive(Clone, Debug, Default)]
 pub struct Lights {
-    /// Radiance from all directions, gathered by BSDF and phase sampling only.
-    pub environment: Rgb,
+    environment: Environment,
+    /// The environment among the lights, where it varies.
+    light_of_environment: Option<u32>,
     lights: Vec<Light>,
     light_of_surface: Vec<Option<u32>>,
     light_of_instance: Vec<Option<u32>>,
@@ -27,10 +28,10 @@ pub struct Lights {
 }
 
 impl Lights {
-    /// Gathers the lights; every emitting surface of finite area and every emissive volume that
-    /// ends somewhere becomes one.
+    /// Gathers the lights; an environment that varies, every emitting surface of finite area and
+    /// every emissive volume that ends somewhere becomes one.
     pub fn new(
-        environment: Rgb,
+        environment: Environment,
         mut lights: Vec<Light>,
         surfaces: &[Surface],
         world: &World,
@@ -43,6 +44,8 @@ impl Lights {
                 lights.push(Light::Surface { index, shape, radiance });
             }
         }
+        let light_of_environment = environment.varies().then_some(lights.len() as u32);
+        lights.extend(environment.varies().then(|| Light::Environment(environment.clone())));
         let first_fire = lights.len();
         let mut light_of_instance = vec![None; world.instances().len()];
         for &instance in world.emissive() {
@@ -51,7 +54,34 @@ impl Lights {
         }
         let [all, fires, lamps] = [0..lights.len(), first_fire..lights.len(), 0..first_fire]
             .map(|group| Selector::new(&lights, group, world));
-        Self { environment, lights, light_of_surface, light_of_instance, all, fires, lamps }
+        Self {
+            environment,
+            light_of_environment,
+            lights,
+            light_of_surface,
+            light_of_instance,
+            all,
+            fires,
+            lamps,
+        }
+    }
+
+    /// Light from all around, behind everything else.
+    pub fn environment(&self) -> &Environment {
+        &self.environment
+    }
+
+    /// Density over solid angle with which a light sample at a receiver has the unit `direction`
+    /// towards the environment, the choice of the light included; `None` where it does not vary,
+    /// and BSDF and phase sampling find all of its light.
+    pub fn pdf_of_environment(
+        &self,
+        to: &Receiver,
+        choice: &LightChoice,
+        direction: Vec3A,
+    ) -> Option<f32> {
+        let light = self.light_of_environment?;
+        Some(self.probability(light, to, choice) * self.environment.pdf_solid_angle(direction))
     }
 
     /// The light that `pick`, in [0, 1), chooses for a receiver; `None` where no light can
@@ -141,7 +171,7 @@ impl Lights {
         from: Option<(&Receiver, &LightChoice)>,
         direction: Vec3A,
     ) -> impl Iterator<Item = (&Sun, f32)> {
-        self.all.suns().filter_map(move |index| match &self.lights[index as usize] {
+        self.all.distant().filter_map(move |index| match &self.lights[index as usize] {
             Light::Sun(sun) if sun.shows_along(direction) => {
                 let pdf = from.map_or(0.0, |(to, choice)| {
                     self.probability(index, to, choice) * sun.pdf_solid_angle()
@@ -154,7 +184,7 @@ impl Lights {
 
     /// Whether there are suns, whose disks are seen at the end of rays.
     pub fn has_suns(&self) -> bool {
-        self.all.suns().next().is_some()
+        self.all.distant().any(|index| matches!(self.lights[index as usize], Light::Sun(_)))
     }
 
     /// Summaries of all lights at finite distances.

@@ -3,6 +3,7 @@
 
 mod choice;
 mod emitter;
+mod environment;
 mod kinds;
 mod light_scores;
 mod lights;
@@ -14,6 +15,7 @@ mod tree;
 
 pub use choice::{By, ChosenLight, LightChoice, LightGroup};
 pub use emitter::{Emitter, Receiver};
+pub use environment::{ClearSky, Environment, Gradient, Orientation, Radiance, RadianceMap, Up};
 pub use kinds::Light;
 pub use light_scores::{LightProbabilities, LightScores, Visibility};
 pub use lights::Lights;

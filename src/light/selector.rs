@@ -1,4 +1,5 @@
-//! Choosing one light among many: suns by their irradiance, the rest through the hierarchy.
+//! Choosing one light among many: lights at infinite distance by their irradiance, the rest through
+//! the hierarchy.
 
 use std::ops::Range;
 
@@ -8,32 +9,32 @@ use super::choice::By;
 use super::emitter::{MOST_IMPORTANT, Receiver};
 use super::kinds::Light;
 use super::tree::LightTree;
-use crate::{math::luminance, volume::world::World};
+use crate::volume::world::World;
 
 /// Chooses among some of a scene's lights, by their index in the scene.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Selector {
-    suns: Vec<DistantLight>,
+    distant: Vec<DistantLight>,
     /// The lights of the tree, in its order.
     placed: Vec<u32>,
     tree: LightTree,
-    /// Location of each light of the scene in the hierarchy or among the suns.
+    /// Location of each light of the scene in the hierarchy or among the distant lights.
     places: Vec<LeafPlace>,
 }
 
-/// A sun.
+/// A light at infinite distance: a sun, or the environment.
 #[derive(Clone, Copy, Debug)]
 struct DistantLight {
     light: u32,
-    /// Luminance of the sun's irradiance.
+    /// Luminance of its irradiance.
     importance: f32,
-    /// Unit direction towards the middle of the disk.
+    /// Unit direction towards its middle.
     direction: Vec3A,
 }
 
 #[derive(Clone, Copy, Debug)]
 enum LeafPlace {
-    Sun(u32),
+    Distant(u32),
     Tree(u32),
     Nowhere,
 }
@@ -41,7 +42,7 @@ enum LeafPlace {
 impl Selector {
     /// Chooses among the `group` of a scene's `lights`.
     pub(super) fn new(lights: &[Light], group: Range<usize>, world: &World) -> Self {
-        let (mut suns, mut placed, mut emitters) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut distant, mut placed, mut emitters) = (Vec::new(), Vec::new(), Vec::new());
         let mut places = Vec::with_capacity(lights.len());
         for (index, light) in lights.iter().enumerate() {
             if !group.contains(&index) {
@@ -49,16 +50,12 @@ impl Selector {
                 continue;
             }
             let index = index as u32;
-            places.push(match (light, light.emitter(world)) {
-                (Light::Sun(sun), _) => {
-                    let irradiance = luminance(sun.irradiance());
+            places.push(match (light.distant(), light.emitter(world)) {
+                (Some((irradiance, direction)), _) => {
                     let importance = if irradiance > 0.0 { irradiance } else { 0.0 };
-                    suns.push(DistantLight {
-                        light: index,
-                        importance: importance.min(MOST_IMPORTANT),
-                        direction: sun.direction(),
-                    });
-                    LeafPlace::Sun(suns.len() as u32 - 1)
+                    let importance = importance.min(MOST_IMPORTANT);
+                    distant.push(DistantLight { light: index, importance, direction });
+                    LeafPlace::Distant(distant.len() as u32 - 1)
                 }
                 (_, Some(emitter)) => {
                     placed.push(index);
@@ -68,17 +65,17 @@ impl Selector {
                 (_, None) => LeafPlace::Nowhere,
             });
         }
-        Self { suns, placed, tree: LightTree::new(&emitters), places }
+        Self { distant, placed, tree: LightTree::new(&emitters), places }
     }
 
-    /// The suns' indices.
-    pub(super) fn suns(&self) -> impl Iterator<Item = u32> {
-        self.suns.iter().map(|sun| sun.light)
+    /// The indices of the lights at infinite distance.
+    pub(super) fn distant(&self) -> impl Iterator<Item = u32> {
+        self.distant.iter().map(|distant| distant.light)
     }
 
     /// Number of lights to choose from.
     pub(super) fn len(&self) -> usize {
-        self.suns.len() + self.placed.len()
+        self.distant.len() + self.placed.len()
     }
 
     /// A light and its probability; `pick` is in [0, 1).
@@ -87,8 +84,8 @@ impl Selector {
             By::Hierarchy => self.choose_by_hierarchy(to, pick),
             By::Uniform => {
                 let index = ((pick * self.len() as f64) as usize).min(self.len().checked_sub(1)?);
-                let sun = self.suns.get(index).map(|sun| sun.light);
-                let light = sun.unwrap_or_else(|| self.placed[index - self.suns.len()]);
+                let distant = self.distant.get(index).map(|distant| distant.light);
+                let light = distant.unwrap_or_else(|| self.placed[index - self.distant.len()]);
                 Some((light, 1.0 / self.len() as f32))
             }
             By::Shares(shares) => match shares.pick(pick) {
@@ -102,17 +99,17 @@ impl Selector {
     }
 
     fn choose_by_hierarchy(&self, to: &Receiver, pick: f64) -> Option<(u32, f32)> {
-        if self.suns.is_empty() {
+        if self.distant.is_empty() {
             let (index, probability) = self.tree.sample(to, pick)?;
             return Some((self.placed[index as usize], probability));
         }
-        self.choose_with_suns(to, pick)
+        self.choose_with_distant(to, pick)
     }
 
-    fn choose_with_suns(&self, to: &Receiver, pick: f64) -> Option<(u32, f32)> {
+    fn choose_with_distant(&self, to: &Receiver, pick: f64) -> Option<(u32, f32)> {
         let total = self.total(to);
         let mut left = pick * f64::from(total);
-        for &DistantLight { light, importance, .. } in &self.suns {
+        for &DistantLight { light, importance, .. } in &self.distant {
             if left < f64::from(importance) {
                 return Some((light, importance / total));
             }
@@ -144,9 +141,9 @@ impl Selector {
     /// its middle; `None` where it cannot contribute.
     pub(super) fn guess(&self, light: u32, to: &Receiver) -> Option<(f32, Vec3A)> {
         match self.place(light) {
-            LeafPlace::Sun(sun) => {
-                let sun = &self.suns[sun as usize];
-                Some((sun.importance, sun.direction))
+            LeafPlace::Distant(distant) => {
+                let distant = &self.distant[distant as usize];
+                Some((distant.importance, distant.direction))
             }
             LeafPlace::Tree(index) => {
                 let towards = self.tree.center_of(index)? - to.position;
@@ -159,11 +156,11 @@ impl Selector {
 
     fn probability_by_hierarchy(&self, place: LeafPlace, to: &Receiver) -> f32 {
         match place {
-            LeafPlace::Sun(sun) => {
+            LeafPlace::Distant(distant) => {
                 let total = self.total(to);
-                if total > 0.0 { self.suns[sun as usize].importance / total } else { 0.0 }
+                if total > 0.0 { self.distant[distant as usize].importance / total } else { 0.0 }
             }
-            LeafPlace::Tree(index) if self.suns.is_empty() => self.tree.probability(index, to),
+            LeafPlace::Tree(index) if self.distant.is_empty() => self.tree.probability(index, to),
             LeafPlace::Tree(index) => {
                 let total = self.total(to);
                 let share = if total > 0.0 { self.tree.importance(to) / total } else { 0.0 };
@@ -175,6 +172,7 @@ impl Selector {
 
     /// Sum of the importances of all lights: about the irradiance at a receiver, unoccluded.
     pub(super) fn total(&self, to: &Receiver) -> f32 {
-        self.suns.iter().map(|sun| sun.importance).sum::<f32>() + self.tree.importance(to)
+        self.distant.iter().map(|distant| distant.importance).sum::<f32>()
+            + self.tree.importance(to)
     }
 }

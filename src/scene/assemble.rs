@@ -1,6 +1,7 @@
 //! Settings to the core's scene.
 
 mod camera;
+mod environment;
 mod motion;
 mod placement;
 mod source;
@@ -11,12 +12,13 @@ use super::sequence::Gap;
 use super::{VolumeCache, settings::Settings};
 use crate::{
     error::{Progress, Result},
-    light::Lights,
+    light::{Light, Lights},
     transport::Scene,
     volume::world::World,
 };
 
 pub use camera::camera;
+use environment::BuiltEnvironment;
 pub(crate) use placement::world_from_file;
 use surfaces::LightOrSurface;
 
@@ -25,7 +27,7 @@ use surfaces::LightOrSurface;
 pub struct Assembled {
     /// The scene.
     pub scene: Scene,
-    /// Missing files and grids of the frame, volume by volume.
+    /// Missing files and grids of the frame, volume by volume, and of its environment.
     pub gaps: Vec<Gap>,
 }
 
@@ -41,7 +43,7 @@ pub fn assemble(settings: &Settings, cache: &VolumeCache, progress: Progress) ->
 /// `cache`, so that a scene of which only numbers have changed is built in a few milliseconds.
 ///
 /// # Errors
-/// The settings are not valid, or a volume cannot be read; names the file, the key and the fix.
+/// The settings are not valid, or a file cannot be read; names the file, the key and the fix.
 pub fn assemble_frame(
     settings: &Settings,
     cache: &VolumeCache,
@@ -56,12 +58,17 @@ pub fn assemble_frame(
             LightOrSurface::Surface(surface) => surfaces.push(surface),
         }
     }
-    let (instances, gaps) = volumes::instances(&settings.volume, &settings.time, cache, progress)?;
+    let (instances, mut gaps) =
+        volumes::instances(&settings.volume, &settings.time, cache, progress)?;
     let used: Vec<_> = instances.iter().map(|instance| instance.volume().clone()).collect();
     cache.retain(&used);
     let world = World::new(instances);
     let camera = camera(settings)?;
-    let lights = Lights::new(settings.environment.radiance.rgb(), lights, &surfaces, &world);
+    let BuiltEnvironment { environment, sun, gap } =
+        environment::environment(settings, cache, progress)?;
+    lights.extend(sun.map(Light::Sun));
+    gaps.extend(gap);
+    let lights = Lights::new(environment, lights, &surfaces, &world);
     let max_scatters = settings.path.max_scatters;
     let scene = Scene::new(camera, world, surfaces, lights, max_scatters, settings.strategy);
     Ok(Assembled { scene, gaps })

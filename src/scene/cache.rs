@@ -1,14 +1,15 @@
-//! Volume files in memory: each is read once, each grid of it when first needed, and what was
-//! derived from them is reused while only other numbers of the scene change.
+//! Files of scenes in memory: each volume is read once, each grid of it when first needed, and what
+//! was derived from them is reused while only other numbers of the scene change.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::SystemTime;
 
 use glam::DAffine3;
 
+use super::radiance_maps::RadianceMaps;
 use super::sequence::Gap;
 use super::settings::{TimeSettings, VolumeSettings};
+use super::stamp::{Stamp, stamp_of};
 use super::{embedded, grid_address};
 use crate::error::{Error, Progress, Result};
 use crate::files::path_of;
@@ -25,6 +26,7 @@ pub struct VolumeCache {
     files: Mutex<HashMap<String, Arc<VolumeFile>>>,
     /// The volumes, those that were used last at the end.
     volumes: Mutex<Vec<BuiltVolume>>,
+    environment: RadianceMaps,
     /// Bytes that frames which no scene shows may take.
     room: usize,
 }
@@ -55,9 +57,6 @@ pub struct VolumeFile {
     /// The fogs of level sets, by the places of the grids in the directory.
     fogs: Mutex<HashMap<usize, Arc<SparseGrid<f32>>>>,
 }
-
-/// Time and size of a file, which tell whether it has changed.
-pub type Stamp = (Option<SystemTime>, u64);
 
 /// A grid in memory with its place in the file's space.
 #[derive(Clone)]
@@ -90,6 +89,11 @@ impl VolumeCache {
     /// forth on the time line need not read them again.
     pub fn with_room(room: usize) -> Self {
         Self { room, ..Self::default() }
+    }
+
+    /// The map of the environment.
+    pub(super) fn environment(&self) -> &RadianceMaps {
+        &self.environment
     }
 
     /// Bytes that frames which no scene shows may take.
@@ -362,14 +366,6 @@ fn rebased(mut values: VoxelValues) -> VoxelValues {
         VoxelValues::Unsupported(_) => {}
     }
     values
-}
-
-pub(super) fn stamp_of(name: &str) -> Result<Stamp> {
-    let metadata = std::fs::metadata(path_of(name)).map_err(|e| Error::io(path_of(name), e))?;
-    if metadata.is_dir() {
-        return Err(Error::invalid(name, "", "this is a folder; name a volume file in it"));
-    }
-    Ok((metadata.modified().ok(), metadata.len()))
 }
 
 /// The contents, also after a panic elsewhere: they are sound after every statement.

@@ -201,7 +201,7 @@ fn fits(value: &Value, schema: &Schema) -> bool {
 
 /// Keys that the scene format knows but that are not there yet. They are refused with a message
 /// that says so, which is another message than for a misspelled key.
-const PLANNED_KEYS: &[&str] = &["environment.file", "environment.rotation"];
+const PLANNED_KEYS: &[&str] = &["environment.group"];
 
 fn is_planned(general_path: &str) -> bool {
     PLANNED_KEYS.contains(&general_path)

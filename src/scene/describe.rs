@@ -2,10 +2,11 @@
 
 use serde::Serialize;
 
-use super::cache::{GridValues, PlacedGrid, Stamp, VolumeCache, VolumeFile, stamp_of};
+use super::cache::{GridValues, PlacedGrid, VolumeCache, VolumeFile};
 use super::file_box::FileBox;
 use super::grid_address;
 use super::sequence::NumberedSet;
+use super::stamp::{Stamp, stamp_of};
 use crate::error::{Error, Progress, Result};
 use crate::files::name_of;
 use crate::volume::file::GridInfo;

@@ -13,7 +13,7 @@ pub(super) const BUILTIN: &str = "builtin:";
 
 /// Whether the key at `path` names a file.
 pub(super) fn is_file_key(path: &str) -> bool {
-    keys::general(path) == "volume.N.file"
+    ["volume.N.file", "environment.file"].contains(&keys::general(path).as_str())
 }
 
 /// The folder that a scene file's relative names start from.

@@ -32,7 +32,7 @@ pub fn fingerprints(settings: &Settings, progress: Progress) -> Result<Vec<Finge
 ///
 /// # Errors
 /// The folder of a sequence cannot be read or has no frame.
-pub fn volume_files(settings: &Settings) -> Result<Vec<PathBuf>> {
+pub fn files_on_disk(settings: &Settings) -> Result<Vec<PathBuf>> {
     let names = frame_files(settings)?.into_iter();
     Ok(names
         .filter(|name| !name.starts_with(BUILTIN))
@@ -40,10 +40,11 @@ pub fn volume_files(settings: &Settings) -> Result<Vec<PathBuf>> {
         .collect())
 }
 
-/// The names of the files that the volumes show in the scene's frame.
+/// The names of the files that the volumes show in the scene's frame, and of the environment.
 fn frame_files(settings: &Settings) -> Result<Vec<String>> {
     let mut listings = Listings::default();
     let frame_of = |volume| volume_frame(volume, &settings.time, &mut listings);
     let frames = settings.volume.iter().map(frame_of);
-    frames.filter_map(|frame| frame.map(|frame| frame.file).transpose()).collect()
+    let files = frames.filter_map(|frame| frame.map(|frame| frame.file).transpose());
+    files.chain(settings.environment.file.clone().map(Ok)).collect()
 }

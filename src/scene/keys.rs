@@ -152,6 +152,8 @@ mod tests {
                 "volume.N.matrix",
                 "volume.N.frame_range",
                 "time.range",
+                "environment.file",
+                "environment.gradient",
                 "volume.N.emission.grid",
                 "volume.N.albedo.grid",
                 "volume.N.velocity.grid",

@@ -5,7 +5,8 @@
 //!         \----> bare volume --------guess------/  \--save--> text
 //! ```
 //!
-//! - `load`, `files`, `embedded`: opening a source by name; [`cache`]: volume files in memory.
+//! - `load`, `files`, `embedded`: opening a source by name; [`cache`]: files in memory, with the
+//!   `radiance_maps` of environments, read again by their `stamp`.
 //! - `parse`, `overrides`: TOML text to settings, or, by [`apply`], values of `--set` laid over
 //!   settings later; `save`: settings to text.
 //! - `check`, `rules`: errors in keys and values, for `parse`; `schema`, [`keys`]: the schema and
@@ -37,6 +38,7 @@ pub mod keys;
 mod load;
 mod overrides;
 mod parse;
+mod radiance_maps;
 mod resume;
 mod role;
 mod rules;
@@ -44,6 +46,7 @@ mod save;
 mod schema;
 pub mod sequence;
 pub mod settings;
+mod stamp;
 
 pub use additions::{floor_under, new_light};
 pub use assemble::{Assembled, assemble, assemble_frame, camera, prefetch};
@@ -51,7 +54,7 @@ pub use cache::VolumeCache;
 pub use conventions::{Program, upright};
 pub use describe::{FileDescription, GridDescription, VoxelDescription, describe, stamp};
 pub use embedded::{DEFAULT_SCENE, scenes as embedded_scenes};
-pub use fingerprints::{fingerprints, volume_files};
+pub use fingerprints::{files_on_disk, fingerprints};
 pub use fit_camera::fit_camera;
 pub use guess::{About, Note};
 pub use load::{Opened, is_scene, load, open, scene_file};
@@ -61,3 +64,4 @@ pub use resume::{Blocker, Compatibility, compatibility, settings_of};
 pub use role::Role;
 pub use save::{save, to_toml};
 pub use settings::Settings;
+pub use stamp::Stamp;

@@ -210,13 +210,17 @@ fn index_in(count: usize, text: &str, path: &str, may_append: bool) -> Result<us
 }
 
 /// A new choice (`shape`, `type`, `mode`) takes with it the keys that belonged to the old one; a
-/// file replaces a shape and a matrix the other placement keys, and the other way round.
+/// file replaces a shape, a matrix the other placement keys, and the other way round. The sources
+/// of the sky replace each other.
 fn drop_replaced(table: &mut Table, key: &str, schema: &Schema) {
     let replaced: &[&str] = match key {
-        "file" => &["shape"],
+        "file" => &["shape", "radiance", "gradient", "sky"],
         "shape" => &["file"],
         "matrix" => &["translate", "rotate", "scale"],
         "translate" | "rotate" | "scale" => &["matrix"],
+        "radiance" => &["file", "gradient", "sky"],
+        "gradient" => &["radiance", "file", "sky"],
+        "sky" => &["radiance", "file", "gradient"],
         _ => &[],
     };
     for other in replaced {

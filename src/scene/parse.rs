@@ -79,13 +79,17 @@ fn syntax(text: &str, source: &str, error: &toml::de::Error) -> Error {
 }
 
 fn resolve_files(scene: &mut Table, folder: &Path) -> Result<()> {
-    let Some(Value::Array(volumes)) = scene.get_mut("volume") else { return Ok(()) };
-    for volume in volumes {
-        if let Some(Value::String(file)) = volume.get_mut("file") {
+    let resolve = |table: &mut Value| {
+        if let Some(Value::String(file)) = table.get_mut("file") {
             *file = files::resolve(file, folder)?;
         }
+        Ok(())
+    };
+    if let Some(environment) = scene.get_mut("environment") {
+        resolve(environment)?;
     }
-    Ok(())
+    let Some(Value::Array(volumes)) = scene.get_mut("volume") else { return Ok(()) };
+    volumes.iter_mut().try_for_each(resolve)
 }
 
 /// Brings keys that may be spelled in two ways to one.

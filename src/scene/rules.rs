@@ -4,8 +4,8 @@
 use glam::{Mat3, Vec3};
 
 use super::settings::{
-    CameraSettings, EmissionMode, LightKind, LightSettings, RampKind, Settings, SurfaceSettings,
-    SurfaceShape, VelocitySettings, VolumeSettings, VolumeShape,
+    CameraSettings, EmissionMode, EnvironmentSettings, LightKind, LightSettings, RampKind,
+    Settings, SurfaceSettings, SurfaceShape, VelocitySettings, VolumeSettings, VolumeShape,
 };
 use crate::error::{Error, Result};
 
@@ -17,6 +17,8 @@ pub(super) fn check_rules(settings: &Settings, source: &str) -> Result<()> {
         move |(key, reason): Fault| (format!("{prefix}.{key}"), reason)
     };
     camera(&settings.camera).map_err(|(key, reason)| fail((format!("camera.{key}"), reason)))?;
+    environment(&settings.environment)
+        .map_err(|(key, reason)| fail((format!("environment.{key}"), reason)))?;
     if settings.time.range.is_some_and(|[first, last]| first > last) {
         let reason = "the first frame comes after the last".to_owned();
         return Err(fail(("time.range".to_owned(), reason)));
@@ -70,6 +72,27 @@ fn camera_view(camera: &CameraSettings) -> Result<(), Fault> {
         return fault("up", "up points along the view; choose another direction");
     }
     Ok(())
+}
+
+/// At most one source of light; a radiance of 0 is none.
+fn environment(environment: &EnvironmentSettings) -> Result<(), Fault> {
+    let EnvironmentSettings { radiance, file, gradient, sky, .. } = environment;
+    if file.as_ref().is_some_and(String::is_empty) {
+        return fault("file", "the name is empty; name a picture, .hdr or .exr");
+    }
+    let sources = [
+        ("radiance", !radiance.is_black()),
+        ("file", file.is_some()),
+        ("gradient", gradient.is_some()),
+        ("sky", sky.is_some()),
+    ];
+    let mut given = sources.iter().filter(|(_, is_given)| *is_given);
+    match (given.next(), given.next()) {
+        (Some((first, _)), Some((second, _))) => {
+            fault(second, format!("the sky has {first} or {second}, not both; leave one out"))
+        }
+        _ => Ok(()),
+    }
 }
 
 fn volume(volume: &VolumeSettings) -> Result<(), Fault> {

@@ -15,7 +15,8 @@ use crate::files::replace;
 pub fn to_toml(settings: &Settings, folder: Option<&Path>) -> Result<String> {
     let mut settings = settings.clone();
     if let Some(folder) = folder {
-        for file in settings.volume.iter_mut().filter_map(|volume| volume.file.as_mut()) {
+        let volumes = settings.volume.iter_mut().filter_map(|volume| volume.file.as_mut());
+        for file in volumes.chain(settings.environment.file.as_mut()) {
             *file = files::relative(file, folder);
         }
     }

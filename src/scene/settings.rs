@@ -7,9 +7,12 @@
 
 mod camera;
 mod emission;
+mod environment;
 mod film;
 mod light;
 mod or_default;
+mod scene;
+mod sky;
 mod surface;
 mod time;
 mod values;
@@ -18,8 +21,11 @@ mod volume;
 
 pub use camera::{CameraKey, CameraSettings, field_of_view, focal_length};
 pub use emission::{EmissionMode, EmissionSettings, Normalize};
-pub use film::{EnvironmentSettings, FilmSettings, MAX_SEED, PathSettings};
+pub use environment::EnvironmentSettings;
+pub use film::{FilmSettings, MAX_SEED, PathSettings};
 pub use light::{LightKind, LightSettings};
+pub use scene::{SceneSettings, WorldUp};
+pub use sky::SkySettings;
 pub use surface::{MaterialKind, MaterialSettings, SurfaceSettings, SurfaceShape};
 pub use time::{MAX_FRAME, MAX_SHUTTER, TimeSettings};
 pub use values::{Albedo, Axis, Color, Extent, GridKey};
@@ -36,6 +42,9 @@ use crate::transport::strategy::Strategy;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Settings {
+    /// The world.
+    #[serde(skip_serializing_if = "is_default")]
+    pub scene: SceneSettings,
     /// The camera.
     pub camera: CameraSettings,
     /// The film: render size, seed and samples.

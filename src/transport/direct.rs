@@ -318,7 +318,7 @@ pub struct LightEstimate {
 }
 
 /// Estimates the radiance that arrives at a receiver from lights at the time of the frame, by one
-/// light sample and without scores of probes. Excludes the environment and scattered light.
+/// light sample and without scores of probes. Excludes an even environment and scattered light.
 pub fn estimate_light(
     scene: &Scene,
     emission_estimator: &EmissionEstimator,
@@ -447,9 +447,23 @@ pub fn at_the_end(
         None => {
             let from = prev_vertex.map(|prev| (&prev.from, &prev.lamps.choice));
             let suns = scene.lights.suns_behind(from, ray.direction);
-            suns.fold(scene.lights.environment, |sum, (sun, pdf)| {
-                sum + shared(sun.radiance(), &|_| pdf)
-            })
+            let environment = environment_behind(scene, ray.direction, prev_vertex);
+            suns.fold(environment, |sum, (sun, pdf)| sum + shared(sun.radiance(), &|_| pdf))
         }
+    }
+}
+
+/// Radiance of the environment along a unit `direction`, MIS-weighted against light samples at the
+/// previous vertex. An even environment has no light samples: where nothing but the BSDF or phase
+/// function varies, sampling those is all that there is to gain.
+fn environment_behind(scene: &Scene, direction: Vec3A, prev_vertex: Option<&PrevVertex>) -> Rgb {
+    let environment = scene.lights.environment();
+    let Some(PrevVertex { from, lamps, pdf_solid_angle, .. }) = prev_vertex else {
+        return if environment.is_hidden() { Rgb::ZERO } else { environment.radiance(direction) };
+    };
+    let radiance = environment.radiance(direction);
+    match scene.lights.pdf_of_environment(from, &lamps.choice, direction) {
+        Some(pdf) => radiance * lamps.weight_of_ray(*pdf_solid_angle, pdf),
+        None => radiance,
     }
 }

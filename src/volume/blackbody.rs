@@ -59,6 +59,12 @@ impl BlackbodyTable {
 static TABLE: LazyLock<BlackbodyTable> = LazyLock::new(BlackbodyTable::new);
 
 fn color_of(kelvin: f64) -> Rgb {
+    filtered(kelvin, |_| 1.0)
+}
+
+/// Linear Rec.709 color of a black body behind a filter that lets `through` the share of the light
+/// of each wavelength in nanometers; otherwise as [`peak_normalized`].
+pub fn filtered(kelvin: f64, through: impl Fn(f64) -> f64) -> Rgb {
     if kelvin <= 0.0 {
         return Rgb::ZERO;
     }
@@ -66,6 +72,7 @@ fn color_of(kelvin: f64) -> Rgb {
     for nanometers in (360..=830).step_by(5) {
         let matching = color_matching(f64::from(nanometers));
         let power = relative_planck(f64::from(nanometers) * 1e-9, kelvin);
+        let power = power * through(f64::from(nanometers));
         for channel in 0..3 {
             xyz[channel] += power * matching[channel];
         }

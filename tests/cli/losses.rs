@@ -45,14 +45,14 @@ fn outputs_never_replace_what_is_read() {
         refused(&place, &[&render[..], &[stats]].concat(), "deep/fire.toml", words);
     }
     let volume = "deep/volumes/fire.vdb";
-    refused(&place, &[&render[..], &[volume]].concat(), volume, "overwrite a volume of the scene");
+    refused(&place, &[&render[..], &[volume]].concat(), volume, "overwrite a file of the scene");
     let bare = [volume, "-o", "out.npy", "--stats", "./deep/volumes/fire.vdb", "--size", "8x6"];
-    refused(&place, &bare, volume, "overwrite a volume of the scene");
+    refused(&place, &bare, volume, "overwrite a file of the scene");
     #[cfg(unix)]
     {
         std::os::unix::fs::symlink(volume, place.path("fire.exr")).unwrap();
         let picture = ["deep/fire.toml", "-o", "fire.exr"];
-        refused(&place, &picture, volume, "-o would overwrite a volume of the scene");
+        refused(&place, &picture, volume, "-o would overwrite a file of the scene");
     }
     assert!(!place.path("out.npy").exists());
 }

@@ -287,7 +287,7 @@ fn names_that_are_no_text_are_opened_saved_and_found_again() {
     let name = flambeau::files::name_of(&path);
     let settings = scene::load(&name).unwrap();
     build(&settings);
-    assert_eq!(scene::volume_files(&settings).unwrap(), std::slice::from_ref(&path));
+    assert_eq!(scene::files_on_disk(&settings).unwrap(), std::slice::from_ref(&path));
     assert!(scene::fingerprints(&settings, NO_PROGRESS).is_ok());
     let saved = odd.join(std::ffi::OsStr::from_bytes(b"sc\xe8ne.toml"));
     scene::save(&settings, &saved).unwrap();

@@ -171,7 +171,7 @@ fn frames_may_lack_velocities() {
             scene::assemble_frame(&settings, &VolumeCache::default(), NO_PROGRESS).unwrap();
         let grids = assembled.gaps.iter().map(|gap| match gap {
             Gap::Grid { grid, .. } => grid.clone(),
-            Gap::Frame { .. } | Gap::Empty { .. } => panic!("{gap}"),
+            Gap::Frame { .. } | Gap::Empty { .. } | Gap::Pixels { .. } => panic!("{gap}"),
         });
         let volume = assembled.scene.world.instances()[0].volume().clone();
         let from = volume.source(Vec3A::ONE, 0.01);

@@ -464,6 +464,7 @@ fn same_time(a: &TimeSettings, b: &TimeSettings) -> bool {
 /// Whether two settings are of the same things under the same light, wherever the camera is.
 pub fn same_matter(a: &Settings, b: &Settings) -> bool {
     let Settings {
+        scene,
         camera: _,
         film: _,
         time,
@@ -475,6 +476,7 @@ pub fn same_matter(a: &Settings, b: &Settings) -> bool {
         strategy: _,
     } = a;
     same_time(time, &b.time)
+        && *scene == b.scene
         && *path == b.path
         && *environment == b.environment
         && *volume == b.volume

@@ -206,6 +206,7 @@ fn same_places(a: &BuiltScene, b: &BuiltScene) -> bool {
     // probes, the volumes are compared as they were built at their frame, and the strategy by its
     // recipe. Of the camera, only its position in the frame matters.
     let Settings {
+        scene,
         camera: _,
         film: _,
         time: _,
@@ -217,6 +218,7 @@ fn same_places(a: &BuiltScene, b: &BuiltScene) -> bool {
         strategy: _,
     } = &a.settings;
     *environment == b.settings.environment
+        && *scene == b.settings.scene
         && *path == b.settings.path
         && *light == b.settings.light
         && *surface == b.settings.surface

@@ -11,7 +11,7 @@ use super::mailbox::Mailbox;
 use super::probe_placer::ProbePlacer;
 use super::reopen::{self, Reopened};
 use crate::error::{Error, Progress, Result};
-use crate::scene::cache::Stamp;
+use crate::scene::Stamp;
 use crate::scene::sequence::time_range;
 use crate::scene::{self, Assembled, Overrides, Settings, VolumeCache};
 

@@ -98,7 +98,7 @@ impl App {
     fn watch_files(&mut self) {
         let settings = &self.editor.document.settings;
         // What cannot be listed is reported where the scene is built.
-        let mut paths = scene::volume_files(settings).unwrap_or_default();
+        let mut paths = scene::files_on_disk(settings).unwrap_or_default();
         let sequences = settings.volume.iter().filter_map(|volume| volume.file.as_deref());
         let folders = sequences.filter_map(Pattern::spelled).map(|set| set.folder().to_owned());
         paths.extend(folders);

@@ -73,7 +73,8 @@ fn assignment(item: &str) -> Result<String, String> {
 }
 
 /// Sections of a scene other than the strategy.
-const SECTIONS: [&str; 7] = ["camera", "film", "path", "environment", "volume", "light", "surface"];
+const SECTIONS: [&str; 9] =
+    ["scene", "camera", "film", "time", "path", "environment", "volume", "light", "surface"];
 
 /// Splits at the commas that are in no brackets and no quotes.
 fn split(text: &str) -> Vec<&str> {

@@ -46,6 +46,13 @@ pub enum Gap {
         /// Name of the grid.
         grid: String,
     },
+    /// Pixels of the environment's picture hold no radiance, and count as zero.
+    Pixels {
+        /// Name of the file.
+        file: String,
+        /// Number of the pixels.
+        pixels: usize,
+    },
 }
 
 impl fmt::Display for Gap {
@@ -61,15 +68,23 @@ impl fmt::Display for Gap {
             Self::Grid { grid, .. } => {
                 write!(f, "this frame has no grid \"{grid}\", which counts as zero")
             }
+            Self::Pixels { pixels, .. } => write!(
+                f,
+                "{pixels} of its pixels hold negative values or values that are no numbers, which \
+                 count as zero"
+            ),
         }
     }
 }
 
 impl Gap {
-    /// Name of the file that is missing or lacks a grid.
+    /// Name of the file that is missing or lacks something.
     pub fn file(&self) -> &str {
         match self {
-            Self::Frame { file, .. } | Self::Empty { file } | Self::Grid { file, .. } => file,
+            Self::Frame { file, .. }
+            | Self::Empty { file }
+            | Self::Grid { file, .. }
+            | Self::Pixels { file, .. } => file,
         }
     }
 }

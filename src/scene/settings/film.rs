@@ -1,9 +1,7 @@
-//! `[film]`, `[path]` and `[environment]`.
+//! `[film]` and `[path]`.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use super::Color;
 
 /// The largest seed: up to here whole numbers survive programs that read all numbers as `f64`.
 pub const MAX_SEED: u64 = (1 << 53) - 1;
@@ -41,13 +39,4 @@ pub struct PathSettings {
     /// no limit (a guard at 100 000 is counted and shown).
     #[schemars(extend("unit" = "events"), range(min = 0, max = 100_000))]
     pub max_scatters: u32,
-}
-
-/// The sky: light from all directions.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(default)]
-pub struct EnvironmentSettings {
-    /// The radiance of the sky, the same from every direction.
-    #[schemars(extend("unit" = "radiance"))]
-    pub radiance: Color,
 }

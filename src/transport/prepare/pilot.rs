@@ -172,7 +172,7 @@ fn with(counts: &LearnedCounts, (flights, directions): Guidance) -> LearnedCount
 /// Whether there is a choice how the light at the end of rays is gathered.
 fn learns_ends(scene: &Scene) -> bool {
     let strategy = &scene.strategy;
-    let shines = scene.lights.environment.max_element() > 0.0
+    let shines = !scene.lights.environment().is_black()
         || scene.lights.has_suns()
         || scene.surfaces.iter().any(|surface| surface.emits());
     let asks = strategy.advanced.ray_end == RayEnd::Learned;

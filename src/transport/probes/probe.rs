@@ -30,7 +30,7 @@ pub(super) struct Probe {
     lobes: [DirectionalLobe; POINTS],
     /// Light that was scattered or reflected before it arrives.
     indirect: Indirect,
-    /// Radiance of the environment, taken to come from everywhere.
+    /// Radiance of an even environment, taken to come from everywhere.
     ambient: f32,
     /// Mean cosine of the phase function.
     g: f32,
@@ -235,13 +235,15 @@ fn direct_light(
     }
 }
 
-/// Radiance of the environment, attenuated, from a random direction.
+/// Radiance of an even environment, attenuated, from a random direction. One that varies is among
+/// the lights.
 fn environment_light(scene: &Scene, point: Vec3A, rng: &mut PathRng) -> f32 {
-    let radiance = luminance(scene.lights.environment);
-    if radiance <= 0.0 {
+    let environment = scene.lights.environment();
+    if environment.varies() || environment.is_black() {
         return 0.0;
     }
     let direction = spherical(1.0 - 2.0 * rng.uniform(), TAU * rng.uniform());
+    let radiance = luminance(environment.radiance(direction));
     let ray = Ray::new(point, direction);
     if occluded(&scene.surfaces, &ray, f32::INFINITY) {
         return 0.0;

@@ -77,7 +77,8 @@ impl LoadedReference {
             Shows::Camera(_) => None,
             Shows::Scene(then) if then.camera != settings.camera => Some("its camera differs"),
             Shows::Scene(then) => {
-                let same = then.path == settings.path
+                let same = then.scene == settings.scene
+                    && then.path == settings.path
                     && then.environment == settings.environment
                     && then.volume == settings.volume
                     && then.light == settings.light
