@@ -12,6 +12,7 @@ use crate::transport::toggle::Toggle;
 pub enum Command {
     Open,
     OpenPath,
+    LoadEnvironment,
     SaveExr,
     SavePng,
     SaveScene,
@@ -132,6 +133,13 @@ impl Command {
                 "Open path…",
                 "Type the path of a scene, a volume or a snapshot, or builtin:NAME for a scene \
                  that comes with Flambeau.",
+            ),
+            C::LoadEnvironment => (
+                CTRL_ALT,
+                Key::O,
+                "Load environment…",
+                "Light the scene by a picture of everything around (.hdr or .exr). It can also be \
+                 dropped on the window.",
             ),
             C::SaveExr => (
                 CTRL,

@@ -87,6 +87,7 @@ fn meant_for(command: Command) -> MeantFor {
     match command {
         Command::Open
         | Command::OpenPath
+        | Command::LoadEnvironment
         | Command::SaveExr
         | Command::SavePng
         | Command::SaveScene

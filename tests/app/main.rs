@@ -9,6 +9,7 @@ mod compare;
 mod crop;
 mod diagnostics;
 mod display;
+mod environment;
 mod film;
 #[path = "../vdb/grids.rs"]
 mod grids;

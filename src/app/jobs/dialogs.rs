@@ -21,6 +21,8 @@ pub enum Purpose {
     SaveScene,
     /// A reference to measure against.
     Reference,
+    /// A picture for the environment.
+    Environment,
     /// A file for a comparison as shown, with its figures.
     SaveComparison,
     /// Files for the frames of the flipbook as shown.
@@ -36,6 +38,7 @@ impl Purpose {
             Self::SavePng => Command::SavePng,
             Self::SaveScene => Command::SaveScene,
             Self::Reference => Command::LoadReference,
+            Self::Environment => Command::LoadEnvironment,
             Self::SaveComparison => Command::SaveComparison,
             Self::SaveFlipbook => Command::SaveFlipbook,
         }
@@ -43,13 +46,13 @@ impl Purpose {
 
     /// Whether a file is to be there already.
     pub fn reads(self) -> bool {
-        matches!(self, Self::Open | Self::Reference)
+        matches!(self, Self::Open | Self::Reference | Self::Environment)
     }
 
     /// The endings that what is saved may have, the usual one first; none for what is read.
     pub fn extensions(self) -> &'static [&'static str] {
         match self {
-            Self::Open | Self::Reference => &[],
+            Self::Open | Self::Reference | Self::Environment => &[],
             Self::SaveExr => &["exr"],
             Self::SavePng | Self::SaveComparison => &["png"],
             Self::SaveFlipbook => &["png", "exr"],
@@ -156,6 +159,9 @@ fn describe(purpose: Purpose, suggested: &Path) -> rfd::FileDialog {
         }
         Purpose::Reference => {
             return dialog.add_filter("Converged pictures", &["exr", "npy"]);
+        }
+        Purpose::Environment => {
+            return dialog.add_filter("Pictures of everything around", &["hdr", "exr"]);
         }
         Purpose::SaveExr => dialog.add_filter("OpenEXR", &["exr"]),
         Purpose::SavePng | Purpose::SaveComparison => dialog.add_filter("PNG", &["png"]),

@@ -1,8 +1,9 @@
-//! The lights beside the fire itself: a list to add to, and the keys of the one that is selected.
+//! The lights beside the fire itself: the environment, a list of lamps to add to, and the keys of
+//! the one that is selected.
 
 use egui::{Button, RichText, Ui, vec2};
 
-use super::{Panel, folded_section};
+use super::{Panel, environment, folded_section};
 use crate::app::ui::theme::color;
 use crate::app::ui::widgets::{
     Number, Vector, color_rows, key_help, row_label, scaled, segments, significant, strength,
@@ -22,7 +23,7 @@ const KINDS: [(LightKind, &str, &str); 5] = [
 /// Shows the section.
 pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
     folded_section(ui, "Lights", |ui| {
-        let mut edit = environment(ui, panel);
+        let mut edit = environment::rows(ui, panel);
         let camera = panel.editor.document.settings.present_camera();
         let opened = panel.editor.opened().settings.light.clone();
         let lights = &mut panel.editor.document.settings.light;
@@ -56,20 +57,6 @@ pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
             panel.editor.choose();
         }
     });
-}
-
-fn environment(ui: &mut Ui, panel: &mut Panel<'_>) -> Option<&'static str> {
-    let reset = strength(panel.editor.opened().settings.environment.radiance);
-    let number = Number {
-        name: "Sky",
-        key: "environment.radiance",
-        soft: 0.0..=reset.max(0.25) * 4.0,
-        logarithmic: true,
-        unit: "",
-        reset,
-    };
-    let radiance = &mut panel.editor.document.settings.environment.radiance;
-    color_rows(ui, number, "Sky color", radiance).then_some("sky")
 }
 
 /// A button for each kind.

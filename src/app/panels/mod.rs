@@ -4,13 +4,15 @@
 //! - `strategy`, `advanced`: toggles and presets, and what is behind them.
 //! - `volume`, `grids`, `emission`, `ramp`, `placement`, `sequence`: a volume, its grids,
 //!   emission, place and frames.
-//! - `lights`, `surfaces`, `camera`, `film`, `display`: the rest of the scene and of the view.
+//! - `lights`, `environment`, `surfaces`, `camera`, `film`, `display`: the rest of the scene and of
+//!   the view.
 
 pub mod advanced;
 pub mod camera;
 pub mod column;
 pub mod display;
 pub mod emission;
+pub mod environment;
 pub mod film;
 pub mod grids;
 pub mod lights;

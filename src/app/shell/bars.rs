@@ -33,6 +33,8 @@ pub enum Dropped {
     Open,
     /// The picture becomes the reference.
     Reference,
+    /// The picture becomes the environment.
+    Environment,
     /// The picture is ignored.
     Cancelled,
 }
@@ -43,9 +45,11 @@ pub fn dropped(ui: &mut Ui, name: &str) -> Option<Dropped> {
         ui.label(RichText::new(name).color(color::TEXT_STRONG));
         let open = "Open its scene and resume from its samples.";
         let reference = "Measure the live picture against it: how far off, and where.";
+        let environment = "Light the scene by it, as a picture of everything around.";
         let choices = [
             ("Open", open, Dropped::Open),
             ("Use as reference", reference, Dropped::Reference),
+            ("Use as environment", environment, Dropped::Environment),
             ("Cancel", "Ignore the file.", Dropped::Cancelled),
         ];
         let mut chosen = None;
@@ -125,6 +129,7 @@ impl PathBar {
             Purpose::SavePng => ("Save PNG as", "path of the .png", "Save"),
             Purpose::SaveScene => ("Save scene as", "path of the .toml", "Save"),
             Purpose::Reference => ("Reference", "path of an .exr or .npy", "Load"),
+            Purpose::Environment => ("Environment", "path of an .hdr or .exr", "Load"),
             Purpose::SaveFlipbook => (
                 "Save flipbook as",
                 "path with #### for the frame, such as fire.####.png or fire.####.exr",

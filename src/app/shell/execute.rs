@@ -15,6 +15,7 @@ impl App {
         match command {
             Command::Open => self.ask(ctx, Purpose::Open),
             Command::OpenPath => self.ask_typed(Purpose::Open),
+            Command::LoadEnvironment => self.ask(ctx, Purpose::Environment),
             Command::SaveExr => self.ask(ctx, Purpose::SaveExr),
             Command::SavePng => self.ask(ctx, Purpose::SavePng),
             Command::SaveScene => self.ask(ctx, Purpose::SaveScene),

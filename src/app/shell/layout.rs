@@ -211,6 +211,7 @@ impl App {
         match choice {
             Dropped::Open => self.open_or_ask(&crate::files::name_of(&path)),
             Dropped::Reference => self.load_reference(&ui.ctx().clone(), path),
+            Dropped::Environment => self.load_environment(&path),
             Dropped::Cancelled => {}
         }
     }

@@ -6,7 +6,7 @@ use crate::app::command::Command;
 use crate::app::document::Editor;
 use crate::app::ui::theme::color;
 
-const OPEN: [Command; 2] = [Command::Open, Command::OpenPath];
+const OPEN: [Command; 3] = [Command::Open, Command::OpenPath, Command::LoadEnvironment];
 const FILE: [&[Command]; 2] =
     [&[Command::SaveExr, Command::SavePng, Command::SaveScene], &[Command::Quit]];
 const RENDER: [&[Command]; 2] = [

@@ -6,6 +6,7 @@ use egui::Context;
 
 use super::app::App;
 use crate::app::jobs::dialogs::Purpose;
+use crate::app::panels;
 use crate::app::shell::save::Content;
 use crate::files::name_of;
 
@@ -16,12 +17,14 @@ impl App {
         self.live_render.open(source);
     }
 
-    /// Opens a dropped file, or measures against it; of a picture that could be either it asks.
+    /// Opens a dropped file, measures against it, or lights the scene by it; of a picture that could
+    /// be any it asks.
     pub(super) fn take_dropped(&mut self, ctx: &Context, path: &Path) {
         let extension = path.extension().map(|extension| extension.to_ascii_lowercase());
         self.files.dropped = None;
         match extension.as_deref().and_then(std::ffi::OsStr::to_str) {
             Some("npy") => self.load_reference(ctx, path.to_owned()),
+            Some("hdr") => self.load_environment(path),
             Some("exr") => self.files.dropped = Some(path.to_owned()),
             _ => self.open_or_ask(&name_of(path)),
         }
@@ -33,12 +36,22 @@ impl App {
             self.open_or_ask(&name_of(&path));
         } else if purpose == Purpose::Reference {
             self.load_reference(ctx, path);
+        } else if purpose == Purpose::Environment {
+            self.load_environment(&path);
         } else if self.live_render.is_building() {
             // The film is about to become that of another scene.
             self.files.waiting.push((purpose, path));
         } else {
             self.save(ctx, purpose, path);
         }
+    }
+
+    /// Lights the scene by a picture.
+    pub(super) fn load_environment(&mut self, path: &Path) {
+        let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        let environment = &mut self.editor.document.settings.environment;
+        panels::environment::set_image(environment, name_of(&path));
+        self.editor.name_edit("environment");
     }
 
     /// Saves what waited for a build to end.
@@ -74,7 +87,7 @@ impl App {
         let live_render = self.compare.second_side.edited(&self.live_render);
         let settings = live_render.rendered()?;
         match purpose {
-            Purpose::Open | Purpose::Reference => None,
+            Purpose::Open | Purpose::Reference | Purpose::Environment => None,
             Purpose::SaveFlipbook => self.flipbook_content(ctx),
             Purpose::SaveComparison => Some(Content::View(Box::new(self.saved_view(ctx)))),
             Purpose::SaveExr => Some(Content::Exr {
