@@ -74,7 +74,8 @@ fn check_memory(size: UVec2, bytes_of_pixel: u64) -> Result<(), String> {
     if count > MOST_PIXELS {
         return Err(format!("{} x {} pixels are too many; make it smaller", size.x, size.y));
     }
-    reserve((count * bytes_of_pixel) as usize).map(drop)
+    let bytes = usize::try_from(count.saturating_mul(bytes_of_pixel)).unwrap_or(usize::MAX);
+    reserve(bytes).map(drop)
 }
 
 fn convert(pixels: &mut [[f32; 3]], rec_709_from_rgb: Option<Mat3A>) {
