@@ -364,6 +364,8 @@ mod tests {
         assert!((sum / f64::from(n) - 1.0).abs() < 5e-3);
     }
 
+    /// The first slots, which the camera alone has.
+    const AT_CAMERA: usize = 5;
     const SLOTS: [Slot; 25] = [
         Slot::PixelX,
         Slot::PixelY,
@@ -480,8 +482,8 @@ mod tests {
             assert!(z.abs() < 5.0, "{what}: z {z}");
         };
         let of = |slot, vertex| move |pixel, s| number(0, pixel, s, slot, vertex);
-        for (i, &a) in SLOTS[3..].iter().enumerate() {
-            for &b in &SLOTS[3..3 + i] {
+        for (i, &a) in SLOTS[AT_CAMERA..].iter().enumerate() {
+            for &b in &SLOTS[AT_CAMERA..AT_CAMERA + i] {
                 check(correlation(of(a, 1), of(b, 1)), &format!("{a:?} and {b:?}"));
             }
             check(correlation(of(a, 1), of(a, 2)), &format!("{a:?} of two vertices"));
@@ -501,8 +503,8 @@ mod tests {
     #[test]
     fn means_are_unbiased() {
         for samples in [1, 3, 11, 100] {
-            for (k, &slot) in SLOTS[3..].iter().enumerate() {
-                let other = SLOTS[3 + (k + 5) % (SLOTS.len() - 3)];
+            for (k, &slot) in SLOTS[AT_CAMERA..].iter().enumerate() {
+                let other = SLOTS[AT_CAMERA + (k + 5) % (SLOTS.len() - AT_CAMERA)];
                 // cos(2πk u) + (u < 1/3) v² with mean 1/9.
                 let value = |seed, s| {
                     let mut rng = PathRng::stratified(seed, UVec2::new(9, 4), s);
