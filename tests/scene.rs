@@ -231,6 +231,27 @@ const MALFORMED: &[(&str, &[&str])] = &[
         "[[volume]]\nfile = 'a.vdb'\nvelocity = { grid = 'v', unit = 'hour' }",
         &["volume.0.velocity.unit:", "\"second\"", "\"frame\""],
     ),
+    (
+        "[[volume]]\nshape = 'everywhere'\ndensity.curve = [[0, 0]]\nemission.mode = 'constant'",
+        &["volume.0.density.scale:", "infinitely bright"],
+    ),
+    (
+        "[[volume]]\nshape = 'box'\ndensity.curve = [[0, 1], [0, 2]]",
+        &["volume.0.density.curve:", "ascend"],
+    ),
+    (
+        "[[volume]]\nshape = 'box'\ndensity.curve = [[0, 1], [1, -2]]",
+        &["volume.0.density.curve:", "negative"],
+    ),
+    (
+        "[[volume]]\nshape = 'box'\nemission = { mode = 'source', curve = [[0, 1]] }",
+        &["volume.0.emission.curve:", "\"blackbody\""],
+    ),
+    (
+        "[[volume]]\nshape = 'box'\nemission = { mode = 'source', intensity_curve = [[0, 1]] }",
+        &["volume.0.emission.intensity_curve:", "intensity_grid"],
+    ),
+    ("[[volume]]\nshape = 'box'\nphase.mix = 1.5", &["volume.0.phase.mix:", "0..1"]),
     ("[[volume]]\nshape = 'box'\nphase.g = 1", &["volume.0.phase.g:", "-0.999..0.999"]),
     (
         "[[volume]]\nshape = 'box'\nscale = 2\nmatrix = [[1,0,0,0],[0,1,0,0],[0,0,1,0]]",
@@ -664,7 +685,13 @@ fn any_volume(rng: &mut impl Rng, home: &Path) -> VolumeSettings {
     }
     volume.density.scale = color(rng);
     volume.density.grid = maybe(rng, |_| "soot".into());
+    volume.density.curve =
+        maybe(rng, |rng| vec![[0.0, 0.5], [1.0, rng.random()]]).unwrap_or_default();
     volume.phase.g = rng.random_range(-0.999..=0.999);
+    volume.phase.g2 = maybe(rng, |_| 0.25).unwrap_or_default();
+    volume.phase.mix = maybe(rng, |rng| rng.random()).unwrap_or_default();
+    volume.emission.intensity_grid = maybe(rng, |_| "flame".into());
+    volume.emission.curve = maybe(rng, |_| vec![[0.0, -0.5]]).unwrap_or_default();
     volume.emission.mode = [
         EmissionMode::None,
         EmissionMode::Grid,

@@ -14,7 +14,7 @@ use crate::files::path_of;
 use crate::format::{in_steps, mebibytes};
 use crate::image::exr::{Info, read_info};
 use crate::scene::sequence::NumberedSet;
-use crate::scene::settings::{CameraSettings, EnvironmentSettings, VolumeSettings};
+use crate::scene::settings::{CameraSettings, EnvironmentSettings, PhaseSettings, VolumeSettings};
 use crate::scene::{self, GridDescription, Settings, VolumeCache};
 use crate::volume::file::GridInfo;
 
@@ -266,12 +266,14 @@ fn describe_volume(volume: &VolumeSettings) -> String {
         (None, None) => "empty".to_owned(),
     };
     let name = if volume.name.is_empty() { String::new() } else { format!("\"{}\" ", volume.name) };
+    let PhaseSettings { g, g2, mix } = volume.phase;
+    let lobes = if mix > 0.0 { format!("{g} and {g2} (mix {mix})") } else { g.to_string() };
     format!(
         "{name}{what}, density {} x {}, albedo {}, g {}, emission {}",
         plain(&volume.density.scale),
         volume.density_grid(),
         plain(&volume.albedo),
-        volume.phase.g,
+        lobes,
         plain(&volume.emission.mode)
     )
 }

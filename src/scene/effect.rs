@@ -63,9 +63,12 @@ fn reflects(surface: &SurfaceSettings) -> bool {
 /// Whether light comes out of the volume itself.
 pub(super) fn emits(volume: &VolumeSettings) -> bool {
     let emission = &volume.emission;
+    if emission.color().is_black() {
+        return false;
+    }
     match emission.mode {
         EmissionMode::None => false,
-        EmissionMode::Grid => emission.scale() > 0.0 && !emission.color().is_black(),
+        EmissionMode::Grid => emission.scale() > 0.0,
         EmissionMode::Constant => !emission.value().is_black(),
         EmissionMode::Source => {
             !emission.le().is_black() && !volume.density.scale.is_black() && absorbs(&volume.albedo)

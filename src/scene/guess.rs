@@ -81,7 +81,7 @@ pub(super) fn guess(file: &Arc<VolumeFile>, progress: Progress) -> Result<Guess>
     let is_y_up = is_y_up(file, &bounds.to_aabb(), &mut notes);
     let mut first = VolumeSettings {
         file: Some(file.name().to_owned()),
-        phase: PhaseSettings { g: 0.3 },
+        phase: PhaseSettings { g: 0.3, ..PhaseSettings::default() },
         rotate: upright(if is_y_up { Axis::Y } else { Axis::Z }),
         ..VolumeSettings::default()
     };

@@ -155,6 +155,7 @@ mod tests {
                 "environment.file",
                 "environment.gradient",
                 "volume.N.emission.grid",
+                "volume.N.emission.intensity_grid",
                 "volume.N.albedo.grid",
                 "volume.N.velocity.grid",
                 "volume.N.velocity.grids",

@@ -104,6 +104,9 @@ impl Role {
                 .then(|| before.normalize.unwrap_or(Normalize::T4)),
             kelvin_scale: (self == Self::Temperature).then(|| kelvin_scale(max)),
             stops: (self == Self::Flame).then(|| flame_stops(max)),
+            color: before.color,
+            intensity_grid: before.intensity_grid,
+            intensity_curve: before.intensity_curve,
             ..EmissionSettings::default()
         };
     }

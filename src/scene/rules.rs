@@ -8,6 +8,7 @@ use super::settings::{
     Settings, SurfaceSettings, SurfaceShape, VelocitySettings, VolumeSettings, VolumeShape,
 };
 use crate::error::{Error, Result};
+use crate::volume::curve::Curve;
 
 /// Checks the rules across values, of a scene whose single values are within their bounds.
 pub(super) fn check_rules(settings: &Settings, source: &str) -> Result<()> {
@@ -118,6 +119,13 @@ fn volume(volume: &VolumeSettings) -> Result<(), Fault> {
     if volume.shape == Some(VolumeShape::Ramp) {
         ramp(volume)?;
     }
+    let emission = &volume.emission;
+    curve("density.curve", &volume.density.curve, Some(0.0))?;
+    curve("emission.curve", &emission.curve, None)?;
+    curve("emission.intensity_curve", &emission.intensity_curve, Some(0.0))?;
+    if emission.intensity_grid.is_none() && !emission.intensity_curve.is_empty() {
+        return fault("emission.intensity_curve", "name the grid that it maps in intensity_grid");
+    }
     let stops = volume.emission.stops();
     if stops.is_empty() {
         return fault("emission.stops", "a ramp needs at least one stop [value, r, g, b]");
@@ -127,6 +135,23 @@ fn volume(volume: &VolumeSettings) -> Result<(), Fault> {
     }
     if stops.iter().any(|[_, rgb @ ..]| rgb.iter().any(|channel| *channel < 0.0)) {
         return fault("emission.stops", "a color is negative; the least is 0");
+    }
+    Ok(())
+}
+
+/// Most points of a curve.
+const MOST_POINTS: usize = 64;
+
+/// Checks the points of a curve, whose values are at least `least`, if there is a least.
+fn curve(key: &'static str, points: &[[f32; 2]], least: Option<f32>) -> Result<(), Fault> {
+    if points.len() > MOST_POINTS {
+        return fault(key, format!("a curve has at most {MOST_POINTS} points"));
+    }
+    if points.windows(2).any(|pair| pair[0][0] >= pair[1][0]) {
+        return fault(key, "the first numbers of the points must ascend");
+    }
+    if least.is_some_and(|least| points.iter().any(|point| point[1] < least)) {
+        return fault(key, "a value of the curve is negative; the least is 0");
     }
     Ok(())
 }
@@ -168,7 +193,8 @@ fn velocity(volume: &VolumeSettings) -> Result<(), Fault> {
 /// Without extinction, emission that fills space adds up to infinity.
 fn everywhere(volume: &VolumeSettings) -> Result<(), Fault> {
     let emits = !matches!(volume.emission.mode, EmissionMode::None | EmissionMode::Source);
-    if emits && volume.density.scale.rgb().min_element() <= 0.0 {
+    let value = Curve::new(&volume.density.curve).map_or(1.0, |curve| curve.at(1.0));
+    if emits && (volume.density.scale.rgb() * value).min_element() <= 0.0 {
         let reason = "a volume without borders that glows must have a density above 0 in every \
                       channel, else it is infinitely bright";
         return fault("density.scale", reason);

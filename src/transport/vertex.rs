@@ -169,7 +169,7 @@ mod tests {
     fn guided_directions_follow_the_mixture() {
         let axis = Vec3A::new(0.2, 1.0, 0.3).normalize();
         let mut phase = PhaseMix::default();
-        phase.add(0.6, Rgb::ONE);
+        phase.add(&crate::volume::phase::Phase::of(0.6), Rgb::ONE);
         let vertex = Vertex::volume(&Ray::new(Vec3A::ZERO, Vec3A::X), 0.0, phase);
         let mut guiding = GuidingMixture::default();
         guiding.add(0.3, GuidingLobe::Airlight(Airlight::new(axis, 0.5)));

@@ -29,6 +29,17 @@ pub enum Emission {
     Blackbody(Blackbody),
     /// Color by a ramp over a field's value.
     Ramp(ColorRamp),
+    /// An emission times the value of another field.
+    Scaled(Box<ScaledEmission>),
+}
+
+/// ε = value · ε of another emission: its color from one field, its intensity from another.
+#[derive(Clone, Debug)]
+pub struct ScaledEmission {
+    /// Emission that is multiplied.
+    pub emission: Emission,
+    /// Field of the multiplier; negative values count as 0.
+    pub intensity: ScalarField,
 }
 
 /// Black-body emission driven by a temperature field.
@@ -71,6 +82,12 @@ impl Emission {
             Self::Source { le } => mu_a * *le,
             Self::Blackbody(blackbody) => blackbody.at(local, density),
             Self::Ramp(ramp) => ramp.at(local, density),
+            Self::Scaled(scaled) => match scaled.intensity.at(local) {
+                intensity if intensity > 0.0 => {
+                    intensity * scaled.emission.at(local, mu_a, density)
+                }
+                _ => Rgb::ZERO,
+            },
         }
     }
 
@@ -84,6 +101,10 @@ impl Emission {
             Self::Source { le } => luminance(mu_t_max * *le),
             Self::Blackbody(blackbody) => blackbody.upper_bound(local, density_max),
             Self::Ramp(ramp) => ramp.upper_bound(local, density_max),
+            Self::Scaled(scaled) => {
+                let most = scaled.intensity.range(local).1.max(0.0);
+                most * scaled.emission.upper_bound(local, mu_t_max, density_max)
+            }
         }
     }
 
@@ -95,6 +116,7 @@ impl Emission {
             Self::Source { .. } => true,
             Self::Blackbody(blackbody) => blackbody.times_density,
             Self::Ramp(ramp) => ramp.times_density,
+            Self::Scaled(scaled) => scaled.emission.needs_density(),
         }
     }
 
@@ -157,5 +179,46 @@ impl ColorRamp {
         let color = inside.fold(self.color(low).max(self.color(high)), Rgb::max);
         let mask = if self.times_density { density_max } else { 1.0 };
         luminance(color * self.intensity) * mask
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::UVec2;
+
+    use super::*;
+    use crate::math::PathRng;
+    use crate::volume::{curve::Curve, procedural::Noise};
+
+    fn noise(seed: u32) -> ScalarField {
+        ScalarField::Noise(Noise { frequency: 1.5, octaves: 3, contrast: 2.0, seed })
+    }
+
+    /// Color from one field times intensity from another, negative ones as 0; a bound over a box
+    /// holds for all of it.
+    #[test]
+    fn a_second_field_multiplies_the_emission() {
+        let steep = Curve::new(&[[0.4, -1.0], [0.6, 2.0]]);
+        let (color, intensity) = (noise(1), noise(2).through(steep));
+        let field = RgbField::Tinted(color, Rgb::new(1.0, 0.5, 0.0));
+        let emission = Emission::Field { field, scale: Rgb::ONE };
+        let (base, intensity_of) = (emission.clone(), intensity.clone());
+        let scaled = Emission::Scaled(Box::new(ScaledEmission { emission, intensity }));
+        let mut rng = PathRng::new(0, UVec2::ZERO, 0);
+        let mut glows = 0;
+        for _ in 0..500 {
+            let mut point = || Vec3A::new(rng.uniform(), rng.uniform(), rng.uniform());
+            let (low, edge) = (4.0 * point(), 0.5 * point());
+            let bound = scaled.upper_bound(&Aabb::new(low, low + edge), Rgb::ONE, 1.0);
+            for _ in 0..4 {
+                let at = low + edge * point();
+                let seen = scaled.at(at, Rgb::ONE, 1.0);
+                let expected = base.at(at, Rgb::ONE, 1.0) * intensity_of.at(at).max(0.0);
+                assert!((seen - expected).abs().max_element() < 1e-6, "{seen} {expected}");
+                assert!(luminance(seen) <= bound * (1.0 + 1e-5), "{seen} above {bound}");
+                glows += u32::from(seen.x > 0.0);
+            }
+        }
+        assert!((200..1900).contains(&glows), "{glows}");
     }
 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::{Affine3A, Vec3A};
 
 use super::{
+    curve::Curve,
     grid::{SparseGrid, Voxel},
     procedural::{Noise, Ramp},
     taper::{Gather, Taper},
@@ -44,18 +45,24 @@ impl<V: Voxel> GridField<V> {
         Self { grid, place, support }
     }
 
-    /// Trilinear value at a point of the volume's space.
+    /// Trilinear value at a point of the volume's space, 0 outside of the grid's box.
     #[inline]
     pub fn at(&self, local: Vec3A) -> V {
+        self.inside(local).unwrap_or(V::ZERO)
+    }
+
+    /// Trilinear value at a point of the volume's space; `None` outside of the grid's box.
+    #[inline]
+    fn inside(&self, local: Vec3A) -> Option<V> {
         let index = match &self.place {
             Place::Same => local,
             Place::Affine(transform) => transform.transform_point3a(local),
             Place::Tapered(transform, gather) => gather.point(transform.transform_point3a(local)),
         };
         if (index.cmplt(self.support.min) | index.cmpgt(self.support.max)).any() {
-            return V::ZERO;
+            return None;
         }
-        self.grid.sample(index)
+        Some(self.grid.sample(index))
     }
 
     /// Lower and upper bound of the values over a box of the volume's space.
@@ -100,9 +107,54 @@ pub enum ScalarField {
     Ramp(Ramp),
     /// Fractal noise.
     Noise(Noise),
+    /// A function of another field's value.
+    Curved(Box<Curved>),
+}
+
+/// Relative rounding of interpolated values.
+const ROUNDING: f32 = 8.0 * f32::EPSILON;
+
+/// A curve over the values of a field; a grid is 0 outside of its box, whatever the curve.
+#[derive(Clone, Debug)]
+pub struct Curved {
+    curve: Curve,
+    field: ScalarField,
+}
+
+impl Curved {
+    #[inline]
+    fn at(&self, local: Vec3A) -> f32 {
+        match &self.field {
+            ScalarField::Grid(grid) => grid.inside(local).map_or(0.0, |value| self.curve.at(value)),
+            field => self.curve.at(field.at(local)),
+        }
+    }
+
+    fn range(&self, local: &Aabb) -> (f32, f32) {
+        let (low, high) = self.field.range(local);
+        // Interpolated values may lie beyond those that they are made of by rounding, which a steep
+        // curve would show.
+        let slack = ROUNDING * low.abs().max(high.abs());
+        let (least, most) = self.curve.range(low - slack, high + slack);
+        match self.field {
+            // The range of a box that reaches beyond the grid's has the 0 from there.
+            ScalarField::Grid(_) if low <= 0.0 => (least.min(0.0), most.max(0.0)),
+            _ => (least, most),
+        }
+    }
 }
 
 impl ScalarField {
+    /// This field through a curve, if there is one.
+    #[must_use]
+    pub fn through(self, curve: Option<Curve>) -> Self {
+        match (self, curve) {
+            (field, None) => field,
+            (Self::Constant(value), Some(curve)) => Self::Constant(curve.at(value)),
+            (field, Some(curve)) => Self::Curved(Box::new(Curved { curve, field })),
+        }
+    }
+
     /// The value at a point.
     #[inline]
     pub fn at(&self, local: Vec3A) -> f32 {
@@ -111,6 +163,7 @@ impl ScalarField {
             Self::Grid(grid) => grid.at(local),
             Self::Ramp(ramp) => ramp.at(local),
             Self::Noise(noise) => noise.at(local),
+            Self::Curved(curved) => curved.at(local),
         }
     }
 
@@ -121,6 +174,7 @@ impl ScalarField {
             Self::Grid(grid) => grid.range(local),
             Self::Ramp(ramp) => ramp.range(local),
             Self::Noise(noise) => noise.range(local),
+            Self::Curved(curved) => curved.range(local),
         }
     }
 }
@@ -165,6 +219,46 @@ impl RgbField {
                 (min * *tint).max(max * *tint)
             }
             Self::Grid(grid) => grid.range(local).1,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{IVec3, UVec2, UVec3};
+
+    use super::*;
+    use crate::math::PathRng;
+
+    /// A grid of random values, placed askew, through a curve: no value of a box leaves its range,
+    /// inside of the grid, across its border and outside.
+    #[test]
+    fn ranges_of_curved_grids_hold_every_value() {
+        let mut rng = PathRng::new(0, UVec2::ZERO, 0);
+        let values: Vec<f32> = (0..216).map(|_| rng.uniform()).collect();
+        let size = UVec3::splat(6);
+        let grid = SparseGrid::from_dense(IVec3::splat(-3), size, &values, 0.0).unwrap();
+        let place = Affine3A::from_rotation_z(0.4);
+        let field = ScalarField::Grid(GridField::new(Arc::new(grid), place, None));
+        let curves = [&[[0.0, 3.0], [0.5, 1.0], [1.0, 2.0]][..], &[[0.2, 0.0], [0.200_01, 5.0]]];
+        for points in curves {
+            let curved = field.clone().through(Curve::new(points));
+            let (mut outside, mut inside) = (0, 0);
+            for _ in 0..2000 {
+                let mut point = || Vec3A::from_array([(); 3].map(|()| 12.0 * rng.uniform() - 6.0));
+                let low = point();
+                let edge = 0.1 * (point() + 6.0);
+                let (least, most) = curved.range(&Aabb::new(low, low + edge));
+                for _ in 0..8 {
+                    let u = Vec3A::new(rng.uniform(), rng.uniform(), rng.uniform());
+                    let value = curved.at(low + u * edge);
+                    assert!(least <= value && value <= most, "{least} to {most}: {value}");
+                    let is_inside = field.at(low + u * edge) != 0.0;
+                    *(if is_inside { &mut inside } else { &mut outside }) += 1;
+                }
+            }
+            assert!(inside > 1000 && outside > 1000, "{inside} {outside}");
+            assert_eq!(curved.at(Vec3A::splat(40.0)), 0.0, "outside, whatever the curve");
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use glam::{IVec3, Vec3A};
 
+use super::phase::Phase;
 use super::{
     emission::Emission,
     energy::Energy,
@@ -24,8 +25,8 @@ pub struct MediumProperties {
     pub density_scale: Rgb,
     /// Single-scattering albedo μ_s / μ_t, 0 to 1.
     pub albedo: RgbField,
-    /// Mean cosine g of the Henyey–Greenstein phase function, −1 to 1.
-    pub g: f32,
+    /// Phase function of the medium.
+    pub phase: Phase,
     /// Emission of the medium.
     pub emission: Emission,
 }

@@ -2,6 +2,7 @@
 
 pub mod blackbody;
 pub mod cells;
+pub mod curve;
 pub mod emission;
 pub mod energy;
 pub mod field;

@@ -36,6 +36,24 @@ pub fn sample_henyey_greenstein(g: f32, forward: Vec3A, u: Vec2) -> Vec3A {
     OrthonormalBasis::around(lobe).world_from_local(about_axis(one_minus_cos, TAU * u.y))
 }
 
+/// The phase function of a medium: one Henyey–Greenstein lobe or two.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Phase {
+    /// Mean cosine of the first lobe, −1 to 1.
+    pub g: f32,
+    /// Mean cosine of the second lobe, −1 to 1.
+    pub g2: f32,
+    /// Share of the second lobe, 0 to 1.
+    pub mix: f32,
+}
+
+impl Phase {
+    /// A single lobe of that mean cosine.
+    pub fn of(g: f32) -> Self {
+        Self { g, ..Self::default() }
+    }
+}
+
 /// The phase function at a point: the overlapping volumes' lobes, weighted by their μ_s.
 #[derive(Clone, Debug, Default)]
 pub struct PhaseMix {
@@ -49,8 +67,18 @@ struct HenyeyGreensteinLobe {
 }
 
 impl PhaseMix {
-    /// Adds the lobe of a volume that scatters `mu_s` here.
-    pub fn add(&mut self, g: f32, mu_s: Rgb) {
+    /// Adds the lobes of a volume that scatters `mu_s` here.
+    #[inline]
+    pub fn add(&mut self, phase: &Phase, mu_s: Rgb) {
+        if phase.mix < 1.0 {
+            self.add_lobe(phase.g, (1.0 - phase.mix) * mu_s);
+        }
+        if phase.mix > 0.0 {
+            self.add_lobe(phase.g2, phase.mix * mu_s);
+        }
+    }
+
+    fn add_lobe(&mut self, g: f32, mu_s: Rgb) {
         match self.lobes.iter_mut().find(|lobe| lobe.g == g) {
             Some(lobe) => lobe.mu_s += mu_s,
             None => self.lobes.push(HenyeyGreensteinLobe { g, mu_s }),
@@ -153,8 +181,8 @@ mod tests {
     #[test]
     fn the_mixture_integrates_to_one_in_each_channel() {
         let mut mix = PhaseMix::default();
-        mix.add(0.7, Rgb::new(1.0, 0.2, 0.0));
-        mix.add(-0.4, Rgb::new(0.5, 0.5, 2.0));
+        mix.add(&Phase::of(0.7), Rgb::new(1.0, 0.2, 0.0));
+        mix.add(&Phase { g: -0.4, g2: 0.9, mix: 0.3 }, Rgb::new(0.5, 0.5, 2.0));
         let n = 4000;
         let (mut value, mut pdf) = (Rgb::ZERO, 0.0);
         for i in 0..n {
@@ -164,6 +192,23 @@ mod tests {
             pdf += p * TAU * 2.0 / n as f32;
         }
         assert!((value - Rgb::ONE).abs().max_element() < 1e-3 && (pdf - 1.0).abs() < 1e-3);
+    }
+
+    /// The mean cosine of two lobes is the mean of theirs, and a share of 0 or 1 leaves one.
+    #[test]
+    fn shares_of_lobes_are_those_of_their_light() {
+        let mix_of = |phase: Phase| {
+            let mut mix = PhaseMix::default();
+            mix.add(&phase, Rgb::ONE);
+            mix
+        };
+        let two = mix_of(Phase { g: 0.8, g2: -0.4, mix: 0.25 });
+        assert!((two.mean_cosine() - 0.5).abs() < 1e-6);
+        let (forward, aside) = (Vec3A::Z, Vec3A::new(0.6, 0.0, 0.8));
+        for (mix, left) in [(0.0, 0.8), (1.0, -0.4)] {
+            let one = mix_of(Phase { g: 0.8, g2: -0.4, mix });
+            assert_eq!(one.eval(forward, aside), mix_of(Phase::of(left)).eval(forward, aside));
+        }
     }
 
     #[test]
@@ -179,12 +224,12 @@ mod tests {
         };
         for g in [0.0, 0.5, 0.9, 0.99, -0.3] {
             let mut lobe = PhaseMix::default();
-            lobe.add(g, Rgb::ONE);
+            lobe.add(&Phase::of(g), Rgb::ONE);
             check(&format!("g {g}"), &lobe, 1e-3);
         }
         let mut mix = PhaseMix::default();
-        mix.add(0.8, Rgb::new(1.0, 0.2, 0.0));
-        mix.add(-0.4, Rgb::new(0.5, 0.5, 2.0));
+        mix.add(&Phase { g: 0.8, g2: -0.7, mix: 0.4 }, Rgb::new(1.0, 0.2, 0.0));
+        mix.add(&Phase::of(-0.4), Rgb::new(0.5, 0.5, 2.0));
         check("mixture", &mix, 1e-2);
     }
 }

@@ -40,7 +40,7 @@ fn volumes(albedo: f64, emission: &str) -> String {
         translate = [0.5, 0.2, -0.3]
         density = {{ scale = 0.7 }}
         albedo = {albedo}
-        phase = {{ g = -0.3 }}
+        phase = {{ g = -0.3, g2 = 0.85, mix = 0.35 }}
         {emission}
         "#
     )

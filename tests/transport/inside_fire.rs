@@ -146,7 +146,7 @@ fn glowing_slab() -> Scene {
 /// A vertex in fog of its own, at a depth below the border.
 fn vertex_below(depth: f32) -> Vertex {
     let mut phase = PhaseMix::default();
-    phase.add(0.0, flambeau::math::Rgb::ONE);
+    phase.add(&flambeau::volume::phase::Phase::default(), flambeau::math::Rgb::ONE);
     Vertex::volume(&Ray::new(Vec3A::new(0.1, 0.2, -depth), Vec3A::X), 0.0, phase)
 }
 

@@ -13,6 +13,7 @@ use flambeau::math::{Aabb, OrthonormalBasis, PathRng, Ray, Rgb, luminance};
 use flambeau::sampling::warp::about_axis;
 use flambeau::volume::emission::Emission;
 use flambeau::volume::field::{RgbField, ScalarField};
+use flambeau::volume::phase::Phase;
 use flambeau::volume::world::{Instance, World};
 use flambeau::volume::{MediumProperties, Region, Volume};
 use glam::{Affine3A, EulerRot, Quat, UVec2, Vec3, Vec3A};
@@ -267,7 +268,7 @@ fn glowing(region: Region, emission: f32) -> Arc<Volume> {
         density: ScalarField::Constant(0.0),
         density_scale: Rgb::ZERO,
         albedo: RgbField::Constant(Rgb::ZERO),
-        g: 0.0,
+        phase: Phase::default(),
         emission: Emission::Field {
             field: RgbField::Constant(Rgb::splat(emission)),
             scale: Rgb::ONE,

@@ -7,6 +7,7 @@ mod caustics;
 mod closed_forms;
 mod common;
 mod counts;
+mod curves;
 mod environment;
 mod extremes;
 mod fire_light;

@@ -28,7 +28,7 @@ pub fn show(
     let (emission, opened) = (&mut volume.emission, &opened.emission);
     let change = match emission.mode {
         EmissionMode::None => None,
-        EmissionMode::Grid => of_grid(ui, emission, opened, voxels.as_ref()),
+        EmissionMode::Grid => factor(ui, "Emission", "scale", &mut emission.scale, opened.scale()),
         EmissionMode::Constant => {
             color_row(ui, "Emission", "value", &mut emission.value, opened.value())
         }
@@ -38,7 +38,14 @@ pub fn show(
         EmissionMode::Blackbody => blackbody(ui, emission, opened, voxels.as_ref()),
         EmissionMode::Ramp => ramp(ui, emission, opened, voxels.as_ref()),
     };
-    edit.or(change)
+    let is_colored = voxels.is_some_and(|voxels| voxels.is_vector);
+    let change = match emission.mode {
+        EmissionMode::Grid | EmissionMode::Blackbody | EmissionMode::Ramp if !is_colored => {
+            change.or(color(ui, emission))
+        }
+        _ => change,
+    };
+    edit.or(change).or(intensity_grid(ui, emission, grids))
 }
 
 const MODES: [(EmissionMode, &str, &str); 6] = [
@@ -81,23 +88,47 @@ fn set_mode(volume: &mut VolumeSettings, mode: EmissionMode, grids: &[GridDescri
     }
 }
 
-fn of_grid(
-    ui: &mut Ui,
-    emission: &mut EmissionSettings,
-    opened: &EmissionSettings,
-    voxels: Option<&VoxelDescription>,
-) -> Option<&'static str> {
-    let edit = factor(ui, "Emission", "scale", &mut emission.scale, opened.scale());
-    if voxels.is_some_and(|voxels| voxels.is_vector) {
-        return edit;
-    }
+/// A color that the emission is multiplied by; the name of the edit if it changed.
+fn color(ui: &mut Ui, emission: &mut EmissionSettings) -> Option<&'static str> {
     let mut color = emission.color();
     let tinted = tint(ui, "Emission color", &key_help("volume.N.emission.color"), &mut color);
-    let change = tinted.then(|| {
+    tinted.then(|| {
         emission.color = Some(color);
         "emission color"
+    })
+}
+
+/// The grid that multiplies the emission, if there is one; the name of the edit if it changed.
+fn intensity_grid(
+    ui: &mut Ui,
+    emission: &mut EmissionSettings,
+    grids: &[GridDescription],
+) -> Option<&'static str> {
+    let fits = |grid: &&GridDescription| {
+        grid.voxels.is_some_and(|voxels| !voxels.is_vector) && !grid.is_level_set()
+    };
+    let fitting: Vec<&GridDescription> = grids.iter().filter(fits).collect();
+    if emission.mode == EmissionMode::None || fitting.len() < 2 {
+        return None;
+    }
+    let help = key_help("volume.N.emission.intensity_grid");
+    let none = (None, "none", "The emission alone.");
+    let named = fitting.iter().enumerate();
+    let named = named.map(|(n, grid)| (Some(n), grid.name.as_str(), "Multiplies the emission."));
+    let choices: Vec<(Option<usize>, &str, &str)> = std::iter::once(none).chain(named).collect();
+    let name = emission.intensity_grid.clone();
+    let present = name.and_then(|name| fitting.iter().position(|grid| grid.is_called(&name)));
+    let mut chosen = present;
+    row(ui, "Intensity grid", &help, |ui| {
+        list(ui, ("Intensity grid", &help), &mut chosen, &choices)
     });
-    edit.or(change)
+    (chosen != present).then(|| {
+        emission.intensity_grid = chosen.map(|n| fitting[n].name.clone());
+        if chosen.is_none() {
+            emission.intensity_curve.clear();
+        }
+        "intensity grid"
+    })
 }
 
 fn ramp(

@@ -152,7 +152,12 @@ fn roles<'n>(
             let text = RichText::new("guess").small().italics().color(color::WARNING);
             ui.label(text).on_hover_text(help);
         }
-        if !Role::ALL.into_iter().any(|role| role.is_of(volume, &grid.name)) {
+        let intensity = volume.emission.intensity_grid.as_deref();
+        if intensity.is_some_and(|name| grid.is_called(name)) {
+            ui.add_space(space::TIGHT);
+            let help = "This grid multiplies the emission.";
+            ui.label(RichText::new("intensity").small().color(color::TEXT_DIM)).on_hover_text(help);
+        } else if !Role::ALL.into_iter().any(|role| role.is_of(volume, &grid.name)) {
             ui.add_space(space::TIGHT);
             let help = "This grid is not used. Click a button to use it.";
             ui.label(RichText::new("not used").small().color(color::TEXT_DIM)).on_hover_text(help);

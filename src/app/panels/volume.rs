@@ -218,6 +218,29 @@ fn medium(
     if row.show(ui, &mut volume.phase.g) {
         edit = Some("anisotropy");
     }
+    edit.or(second_lobe(ui, volume, opened))
+}
+
+/// Shows the share of a second lobe, and where it has one its anisotropy; the name of the edit, if
+/// one was made.
+fn second_lobe(
+    ui: &mut Ui,
+    volume: &mut VolumeSettings,
+    opened: &VolumeSettings,
+) -> Option<&'static str> {
+    let mut edit = None;
+    let number =
+        |name, key, soft, reset| Number { name, key, soft, logarithmic: false, unit: "", reset };
+    let mix = number("Second lobe", "volume.N.phase.mix", 0.0..=1.0, opened.phase.mix);
+    if mix.show(ui, &mut volume.phase.mix) {
+        edit = Some("second lobe");
+    }
+    if volume.phase.mix > 0.0 {
+        let g2 = number("Its anisotropy", "volume.N.phase.g2", -0.95..=0.95, opened.phase.g2);
+        if g2.show(ui, &mut volume.phase.g2) {
+            edit = Some("anisotropy of the second lobe");
+        }
+    }
     edit
 }
 

@@ -9,6 +9,7 @@ use crate::scene::cache::{GridValues, PlacedGrid, VolumeFile};
 use crate::scene::file_box::FileBox;
 use crate::scene::sequence::Gap;
 use crate::scene::settings::{RampKind, VolumeSettings, VolumeShape};
+use crate::volume::curve::Curve;
 use crate::volume::field::{GridField, RgbField, ScalarField, grid_support};
 use crate::volume::grid::GridClass;
 use crate::volume::procedural;
@@ -52,13 +53,29 @@ impl<'a> VolumeSource<'a> {
         field: &str,
     ) -> Result<ScalarField> {
         let name = settings.density_grid();
+        let curve = Curve::new(&settings.density.curve);
         match self {
             Self::Grids(grids) if settings.density.level_set => {
                 let found = grids.find_fog(name, field)?;
-                grids.scalar(found, name, field)
+                Ok(through(grids.scalar(found, name, field)?, curve))
             }
-            _ => self.scalar(name, field),
+            _ => self.curved(name, field, &settings.density.curve),
         }
+    }
+
+    /// The values of a grid of single numbers, mapped by the curve through `points`; `field` is the
+    /// key that names the grid.
+    pub(super) fn curved(
+        &mut self,
+        grid: &str,
+        field: &str,
+        points: &[[f32; 2]],
+    ) -> Result<ScalarField> {
+        let (values, curve) = (self.scalar(grid, field)?, Curve::new(points));
+        Ok(match self {
+            Self::Shape(_) => values.through(curve),
+            Self::Grids(_) => through(values, curve),
+        })
     }
 
     /// The values of a grid of single numbers; `field` is the key that names the grid.
@@ -87,6 +104,14 @@ impl<'a> VolumeSource<'a> {
                 }
             }),
         }
+    }
+}
+
+/// The values of a grid through a curve. One that the file lacks stays zero, whatever the curve.
+fn through(values: ScalarField, curve: Option<Curve>) -> ScalarField {
+    match values {
+        ScalarField::Constant(_) => values,
+        _ => values.through(curve),
     }
 }
 

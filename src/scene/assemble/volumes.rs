@@ -16,10 +16,12 @@ use crate::scene::cache::{BuiltVolume, VolumeFile};
 use crate::scene::effect::emits;
 use crate::scene::sequence::{Gap, Listings, VolumeFrame, volume_frame};
 use crate::scene::settings::{
-    Albedo, EmissionMode, Extent, Normalize, Outside, TimeSettings, VolumeSettings,
+    Albedo, EmissionMode, EmissionSettings, Extent, Normalize, Outside, PhaseSettings,
+    TimeSettings, VolumeSettings,
 };
-use crate::volume::emission::{Blackbody, ColorRamp, Emission};
+use crate::volume::emission::{Blackbody, ColorRamp, Emission, ScaledEmission};
 use crate::volume::field::{RgbField, ScalarField};
+use crate::volume::phase::Phase;
 use crate::volume::world::Instance;
 use crate::volume::{MediumProperties, Region, Volume};
 
@@ -198,32 +200,57 @@ fn properties(
         Albedo::Grid(_) if settings.density.scale.is_black() => RgbField::Constant(Rgb::ZERO),
         Albedo::Grid(named) => source.rgb(&named.grid, &format!("{key}.albedo.grid"))?,
     };
-    let emission = emission(source, settings, &format!("{key}.emission.grid"))?;
-    // Emission of zero needs no walks, but its grid must be there all the same.
+    let emission = match emission(source, settings, &format!("{key}.emission.grid"))? {
+        Emission::None => Emission::None,
+        emission => scaled(source, settings, emission, key)?,
+    };
+    // Emission of zero needs no walks, but its grids must be there all the same.
     let emission = if emits(settings) { emission } else { Emission::None };
     let density_scale = settings.density.scale.rgb();
-    Ok(MediumProperties { density, density_scale, albedo, g: settings.phase.g, emission })
+    let PhaseSettings { g, g2, mix } = settings.phase;
+    let phase = Phase { g, g2, mix };
+    Ok(MediumProperties { density, density_scale, albedo, phase, emission })
+}
+
+/// An emission times the grid of its intensity, if it has one.
+fn scaled(
+    source: &mut VolumeSource,
+    settings: &VolumeSettings,
+    emission: Emission,
+    key: &str,
+) -> Result<Emission> {
+    let EmissionSettings { intensity_grid: Some(grid), intensity_curve, .. } = &settings.emission
+    else {
+        return Ok(emission);
+    };
+    let field = format!("{key}.emission.intensity_grid");
+    let intensity = source.curved(grid, &field, intensity_curve)?;
+    Ok(Emission::Scaled(Box::new(ScaledEmission { emission, intensity })))
 }
 
 fn emission(source: &mut VolumeSource, settings: &VolumeSettings, key: &str) -> Result<Emission> {
     let emission = &settings.emission;
     // Of the modes that read a grid; the others leave it alone.
     let grid = settings.emission_grid().unwrap_or_default();
+    let color = emission.color().rgb();
     Ok(match emission.mode {
         EmissionMode::None => Emission::None,
         EmissionMode::Grid => Emission::Field {
-            field: source.rgb(grid, key)?,
-            scale: emission.scale() * emission.color().rgb(),
+            field: match emission.curve.is_empty() {
+                true => source.rgb(grid, key)?,
+                false => RgbField::Tinted(source.curved(grid, key, &emission.curve)?, Rgb::ONE),
+            },
+            scale: emission.scale() * color,
         },
         EmissionMode::Constant => {
-            Emission::Field { field: RgbField::Constant(emission.value().rgb()), scale: Rgb::ONE }
+            Emission::Field { field: RgbField::Constant(emission.value().rgb()), scale: color }
         }
-        EmissionMode::Source => Emission::Source { le: emission.le().rgb() },
+        EmissionMode::Source => Emission::Source { le: emission.le().rgb() * color },
         EmissionMode::Blackbody => Emission::Blackbody(Blackbody {
-            field: source.scalar(grid, key)?,
+            field: source.curved(grid, key, &emission.curve)?,
             kelvin_offset: emission.kelvin_offset(),
             kelvin_scale: emission.kelvin_scale(),
-            intensity: Rgb::splat(emission.intensity()),
+            intensity: emission.intensity() * color,
             times_density: emission.times_density(),
             t4_reference: match emission.normalize() {
                 Normalize::Peak => None,
@@ -231,13 +258,13 @@ fn emission(source: &mut VolumeSource, settings: &VolumeSettings, key: &str) -> 
             },
         }),
         EmissionMode::Ramp => Emission::Ramp(ColorRamp {
-            field: source.scalar(grid, key)?,
+            field: source.curved(grid, key, &emission.curve)?,
             stops: emission
                 .stops()
                 .iter()
                 .map(|&[value, r, g, b]| (value, Rgb::new(r, g, b)))
                 .collect(),
-            intensity: Rgb::splat(emission.intensity()),
+            intensity: emission.intensity() * color,
             times_density: emission.times_density(),
         }),
     })

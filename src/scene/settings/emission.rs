@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Color;
-use super::or_default::or_default;
+use super::or_default::{is_default, or_default};
 
 const SCALE: f32 = 1.0;
 const COLOR: Color = Color::Gray(1.0);
@@ -28,12 +28,31 @@ pub struct EmissionSettings {
     /// blackbody, `flame` for ramp.
     #[schemars(extend("default" = null, "only" = {"mode": ["grid", "blackbody", "ramp"]}))]
     pub grid: Option<String>,
+    /// Points [value of the grid, mapped value] in ascending order, by which the interpolated value
+    /// is mapped before anything else: linear between them, constant beyond the ends.
+    #[serde(skip_serializing_if = "is_default")]
+    #[schemars(extend("label" = "[[value, value], ...]", "default" = []))]
+    #[schemars(extend("only" = {"mode": ["grid", "blackbody", "ramp"]}))]
+    pub curve: Vec<[f32; 2]>,
+    /// A second grid, whose value multiplies the emission: with mode blackbody, color comes from
+    /// the temperature and intensity from the flame.
+    #[serde(skip_serializing_if = "is_default")]
+    #[schemars(extend("default" = null))]
+    #[schemars(extend("only" = {"mode": ["grid", "constant", "source", "blackbody", "ramp"]}))]
+    pub intensity_grid: Option<String>,
+    /// Points [value of the intensity grid, multiplier] in ascending order: linear between them,
+    /// constant beyond the ends.
+    #[serde(skip_serializing_if = "is_default")]
+    #[schemars(extend("label" = "[[value, multiplier], ...]", "default" = []))]
+    #[schemars(extend("only" = {"mode": ["grid", "constant", "source", "blackbody", "ramp"]}))]
+    pub intensity_curve: Vec<[f32; 2]>,
     /// Emitted radiance per unit length = scale * value of the grid.
     #[schemars(extend("unit" = "radiance/length", "minimum" = 0.0, "default" = SCALE))]
     #[schemars(extend("only" = {"mode": ["grid"]}))]
     pub scale: Option<f32>,
-    /// The color of the emission of a scalar grid.
-    #[schemars(extend("default" = COLOR, "only" = {"mode": ["grid"]}))]
+    /// A color that the emission is multiplied by.
+    #[schemars(extend("default" = COLOR))]
+    #[schemars(extend("only" = {"mode": ["grid", "constant", "source", "blackbody", "ramp"]}))]
     pub color: Option<Color>,
     /// Emitted radiance per unit length, the same everywhere in the volume.
     #[schemars(extend("unit" = "radiance/length", "default" = VALUE))]

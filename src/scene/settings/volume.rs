@@ -175,6 +175,12 @@ pub struct DensitySettings {
     /// Extinction per unit length = scale * value of the grid. 0 makes the smoke invisible.
     #[schemars(extend("unit" = "1/length"))]
     pub scale: Color,
+    /// Points [value of the grid, density] in ascending order, by which the interpolated value is
+    /// mapped before it is scaled: linear between them, constant beyond the ends. It acts in the
+    /// whole box of the grid, also where nothing is stored.
+    #[serde(skip_serializing_if = "is_default")]
+    #[schemars(extend("label" = "[[value, density], ...]", "default" = []))]
+    pub curve: Vec<[f32; 2]>,
 }
 
 /// The phase function.
@@ -185,11 +191,20 @@ pub struct PhaseSettings {
     /// scatters forward, towards -1 backward.
     #[schemars(range(min = -0.999, max = 0.999))]
     pub g: f32,
+    /// Anisotropy of a second lobe, such as the light that clouds send back.
+    #[serde(skip_serializing_if = "is_default")]
+    #[schemars(extend("default" = 0.0), range(min = -0.999, max = 0.999))]
+    pub g2: f32,
+    /// The share of light that scatters by the second lobe.
+    #[serde(skip_serializing_if = "is_default")]
+    #[schemars(extend("default" = 0.0), range(min = 0.0, max = 1.0))]
+    pub mix: f32,
 }
 
 impl Default for DensitySettings {
     fn default() -> Self {
-        Self { grid: None, level_set: false, scale: Color::Gray(1.0) }
+        let (grid, scale) = (None, Color::Gray(1.0));
+        Self { grid, level_set: false, scale, curve: Vec::new() }
     }
 }
 

@@ -14,6 +14,7 @@ use crate::math::{Aabb, Ray, mean};
 use crate::transport::strategy::{Preset, Strategy};
 use crate::volume::emission::Emission;
 use crate::volume::field::{RgbField, ScalarField};
+use crate::volume::phase::Phase;
 use crate::volume::procedural::Noise;
 use crate::volume::world::{Instance, World};
 use crate::volume::{MediumProperties, Region, Volume};
@@ -59,7 +60,7 @@ fn smoke(density: Rgb, albedo: Rgb, emission: Emission) -> World {
         density: ScalarField::Noise(Noise { frequency: 2.0, octaves: 3, contrast: 2.0, seed: 0 }),
         density_scale: density,
         albedo: RgbField::Constant(albedo),
-        g: 0.5,
+        phase: Phase::of(0.5),
         emission,
     };
     let (bounds, cells) = (Aabb::centered(Vec3A::ONE), Vec3A::splat(0.25));
@@ -155,7 +156,7 @@ fn a_collision_of_vanishing_rate_leaves_the_weight_alone() {
         density: ScalarField::Constant(0.0),
         density_scale: Rgb::ONE,
         albedo: RgbField::Constant(Rgb::ZERO),
-        g: 0.0,
+        phase: Phase::default(),
         emission: gathered,
     };
     let region = Region::Box(Aabb::centered(Vec3A::ONE));

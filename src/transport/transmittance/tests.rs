@@ -9,6 +9,7 @@ use crate::error::NO_PROGRESS;
 use crate::math::{Aabb, Ray, Slot};
 use crate::volume::emission::Emission;
 use crate::volume::field::{RgbField, ScalarField};
+use crate::volume::phase::Phase;
 use crate::volume::procedural::Noise;
 use crate::volume::world::{Instance, World};
 use crate::volume::{MediumProperties, Region, Volume};
@@ -27,7 +28,7 @@ fn world(noise_scale: Rgb, ball: f32) -> World {
         density,
         density_scale,
         albedo: RgbField::Constant(Rgb::ZERO),
-        g: 0.0,
+        phase: Phase::default(),
         emission: Emission::None,
     };
     let bounds = Aabb::centered(Vec3A::ONE);

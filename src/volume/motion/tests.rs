@@ -10,6 +10,7 @@ use crate::math::{PathRng, Rgb, luminance};
 use crate::volume::emission::Emission;
 use crate::volume::field::RgbField;
 use crate::volume::grid::SparseGrid;
+use crate::volume::phase::Phase;
 use crate::volume::procedural::Noise;
 use crate::volume::{CoefficientBounds, MediumProperties, Volume};
 
@@ -26,7 +27,7 @@ fn properties() -> MediumProperties {
         density: noise(1),
         density_scale: Rgb::new(3.0, 2.0, 1.0),
         albedo: RgbField::Constant(Rgb::splat(0.5)),
-        g: 0.0,
+        phase: Phase::default(),
         emission: Emission::Field { field: RgbField::Tinted(noise(2), Rgb::ONE), scale: Rgb::ONE },
     }
 }

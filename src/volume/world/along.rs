@@ -183,7 +183,7 @@ impl<'w> MediumRay<'w> {
         if let [cursor] = self.inside.as_slice() {
             let properties = cursor.instance.volume.properties();
             let albedo = cursor.read(t, |properties, at| properties.albedo(at));
-            mix.add(properties.g, albedo);
+            mix.add(&properties.phase, albedo);
             return (albedo, mix);
         }
         let (mu_t, mu_s) = self.extinction(t);
@@ -215,7 +215,7 @@ impl<'w> MediumRay<'w> {
     pub fn phase(&self, t: f32) -> PhaseMix {
         let mut mix = PhaseMix::default();
         for cursor in self.present() {
-            mix.add(cursor.instance.volume.properties().g, cursor.extinction(t).1);
+            mix.add(&cursor.instance.volume.properties().phase, cursor.extinction(t).1);
         }
         mix
     }

@@ -9,6 +9,7 @@ use crate::error::NO_PROGRESS;
 use crate::math::{Aabb, Ray};
 use crate::volume::emission::Emission;
 use crate::volume::field::{RgbField, ScalarField};
+use crate::volume::phase::Phase;
 use crate::volume::procedural::Noise;
 use crate::volume::world::{Instance, World};
 use crate::volume::{MediumProperties, Volume};
@@ -29,8 +30,13 @@ fn noise(seed: u32) -> ScalarField {
 /// Noise of high contrast in cells far larger than its details.
 fn medium(density_scale: Rgb, emission: Emission) -> Instance {
     let albedo = RgbField::Constant(Rgb::ZERO);
-    let properties =
-        MediumProperties { density: noise(5), density_scale, albedo, g: 0.0, emission };
+    let properties = MediumProperties {
+        density: noise(5),
+        density_scale,
+        albedo,
+        phase: Phase::default(),
+        emission,
+    };
     let bounds = Aabb::centered(Vec3A::ONE);
     let volume =
         Volume::varying(bounds, properties, Vec3A::splat(0.45), None, NO_PROGRESS).unwrap();
