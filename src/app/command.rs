@@ -28,6 +28,7 @@ pub enum Command {
     NextFrame,
     SaveFlipbook,
     CameraKey,
+    NextSetup,
     FrameVolume,
     FocusByClick,
     FitPicture,
@@ -211,6 +212,13 @@ impl Command {
                 "Set a key of the camera in this frame, so that it moves to here from the key \
                  before and on to the next, or remove the one that there is. A camera that has \
                  keys gets one where it is moved.",
+            ),
+            C::NextSetup => (
+                PLAIN,
+                Key::U,
+                "Next surroundings",
+                "Put the volumes in other surroundings: a studio, with a floor under a soft sky, \
+                 the same at night, or nothing. They take the place of the environment.",
             ),
             C::FocusByClick => (
                 SHIFT,

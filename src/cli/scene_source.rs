@@ -9,7 +9,7 @@ use super::values::{file_name, parse_frame, parse_size, quoted};
 use crate::error::{Error, Progress, Result};
 use crate::scene::sequence::{Gap, Listings, volume_frame};
 use crate::scene::settings::{MAX_SEED, TimeSettings};
-use crate::scene::{self, Overrides, Settings, VolumeCache};
+use crate::scene::{self, Overrides, Settings, Setup, VolumeCache};
 use crate::transport::Scene;
 use crate::transport::strategy::Preset;
 
@@ -26,6 +26,9 @@ pub struct SceneArguments {
     /// Change a key of the scene, such as volume.0.density.scale=0.35 (see `flambeau keys`).
     #[arg(long, value_name = "KEY=VALUE", value_parser = file_name())]
     set: Vec<String>,
+    /// What stands around a volume that is opened alone: studio, night or black.
+    #[arg(long, value_name = "NAME")]
+    setup: Option<Setup>,
     /// Another seed gives the same picture with other noise.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=MAX_SEED))]
     seed: Option<u64>,
@@ -44,7 +47,14 @@ impl SceneArguments {
     /// The settings as the commands see them. What was guessed for a bare volume is said on
     /// standard error. Mistakes on the command line are wrong usage, mistakes in files failures.
     pub fn settings(&self, cache: &VolumeCache, progress: Progress) -> Result<Settings, Refusal> {
-        let opened = scene::open(&self.scene, &Overrides::default(), cache, progress)?;
+        let mut opened = scene::open(&self.scene, &Overrides::default(), cache, progress)?;
+        if let Some(setup) = self.setup {
+            let Some(bounds) = opened.bounds else {
+                let reason = "it is for a volume that is opened alone; leave it out";
+                return Err(Refusal::usage(Error::invalid("--setup", "", reason)));
+            };
+            setup.apply(&mut opened.settings, &bounds);
+        }
         for note in &opened.notes {
             warn(&note.to_string());
         }

@@ -18,9 +18,9 @@ use super::embedded::short_name;
 use super::file_box::FileBox;
 use super::fit_camera::fit_camera;
 use super::settings::{
-    Albedo, Axis, CameraSettings, Color, DensitySettings, LightKind, LightSettings, PhaseSettings,
-    Settings, VolumeSettings,
+    Albedo, Axis, CameraSettings, Color, DensitySettings, PhaseSettings, Settings, VolumeSettings,
 };
+use super::setup::Setup;
 use crate::error::{Error, Progress, Result};
 use crate::format::two_digits;
 use crate::math::Aabb;
@@ -35,6 +35,8 @@ pub struct Guess {
     pub settings: Settings,
     /// The guesses in words.
     pub notes: Vec<Note>,
+    /// A box around what is seen of the volume.
+    pub bounds: Aabb,
 }
 
 /// Appearance of a volume: how thick and how bright it is made.
@@ -57,7 +59,7 @@ const NAMED_APPEARANCES: &[Appearance] = &[
 /// Smoke without fire.
 const SMOKE: Appearance = Appearance { words: &[], depth: 6.0, albedo: 0.9, radiance: 1.0 };
 /// Smoke that is wrapped around a fire.
-const FIRE_SMOKE: Appearance = Appearance { words: &[], depth: 4.0, albedo: 0.5, radiance: 2.5 };
+const FIRE_SMOKE: Appearance = Appearance { words: &[], depth: 11.0, albedo: 0.45, radiance: 3.0 };
 /// The thin soot inside a fire, which must not hide it.
 const SOOT: Appearance = Appearance { words: &[], depth: 0.4, albedo: 0.3, radiance: 0.9 };
 /// A density that is nowhere above this is soot, if there is fire.
@@ -100,20 +102,20 @@ pub(super) fn guess(file: &Arc<VolumeFile>, progress: Progress) -> Result<Guess>
     let visible = visible.unwrap_or(bounds).transformed(&world_from_file(&first));
     settings.camera = default_camera(&settings, &visible.to_aabb());
     framing::notes_of_strays(&seen, &mut notes);
-    if emission.is_empty() {
-        daylight(&mut settings);
-        notes.push(Note::new(About::Light, "nothing emits light, so a sun and a sky were added"));
-    }
     settings.volume = one_volume_each(&first, &density, &emission, short_name(file.name()));
     let velocities = velocity::velocities(file, &mut notes);
     for (n, volume) in settings.volume.iter_mut().enumerate() {
         volume.velocity = velocities.get(n).or(velocities.first()).cloned().unwrap_or_default();
     }
+    let bounds = visible.to_aabb();
+    Setup::default().apply(&mut settings, &bounds);
+    let text = "a floor and a soft sky were added around it (studio; others are night and black)";
+    notes.push(Note::new(About::Light, text));
     for grid in left_out.iter().filter(|grid| grid.is_missed) {
         let text = format!("\"{}\" is left out: {}", grid.name, grid.reason);
         notes.push(Note::new(About::LeftOut, text));
     }
-    Ok(Guess { settings, notes })
+    Ok(Guess { settings, notes, bounds })
 }
 
 /// Volumes that add up to all grids of the names of density and emission, the n-th of the one with
@@ -241,14 +243,4 @@ fn default_camera(settings: &Settings, bounds: &Aabb) -> CameraSettings {
     };
     let [width, height] = settings.film.size;
     fit_camera(&view, bounds, width as f32 / height as f32)
-}
-
-fn daylight(settings: &mut Settings) {
-    settings.environment.radiance = Color::Rgb([0.18, 0.24, 0.35]);
-    settings.light.push(LightSettings {
-        kind: LightKind::Sun,
-        direction: Some([0.7, 0.45, -0.55]),
-        intensity: Color::Rgb([5.0, 4.6, 4.0]),
-        ..LightSettings::default()
-    });
 }

@@ -9,6 +9,7 @@ use super::sequence::NumberedSet;
 use super::{Overrides, Settings, VolumeCache, apply, embedded, guess, parse};
 use crate::error::{Error, NO_PROGRESS, Progress, Result};
 use crate::files::{name_of, path_of};
+use crate::math::Aabb;
 use crate::volume::file::Format;
 
 /// A scene or volume that was opened.
@@ -18,6 +19,8 @@ pub struct Opened {
     pub settings: Settings,
     /// Notes on the guesses for a bare volume; empty for scenes.
     pub notes: Vec<Note>,
+    /// A box around what is seen of a bare volume; `None` for scenes.
+    pub bounds: Option<Aabb>,
 }
 
 /// Whether the name is that of a scene, a file or an embedded one, and not of a bare volume.
@@ -63,7 +66,7 @@ pub fn open(
         let name = files::resolve(source, Path::new(""))?;
         let guess = guess::guess(&cache.file(&name, progress)?, progress)?;
         let settings = apply(&guess.settings, overrides)?;
-        return Ok(Opened { settings, notes: guess.notes });
+        return Ok(Opened { settings, notes: guess.notes, bounds: Some(guess.bounds) });
     }
     if !files::has_extension(path, "toml") {
         let reason = "expected a scene (.toml), a volume (.vdb, .nvdb), a folder of numbered \
@@ -104,7 +107,8 @@ fn sequence(
     }
     settings.time.frame = f64::from(set.frame);
     guess.notes.push(Note::new(About::Sequence, set.in_words()));
-    Ok(Opened { settings: apply(&settings, overrides)?, notes: guess.notes })
+    let settings = apply(&settings, overrides)?;
+    Ok(Opened { settings, notes: guess.notes, bounds: Some(guess.bounds) })
 }
 
 /// Whether the source is to be opened as a volume: one that is embedded, a file that is one by its
@@ -120,5 +124,6 @@ fn is_volume(source: &str, path: &Path) -> Result<bool> {
 }
 
 fn scene(text: &str, source: &str, folder: &Path, overrides: &Overrides) -> Result<Opened> {
-    Ok(Opened { settings: parse(text, source, folder, overrides)?, notes: Vec::new() })
+    let settings = parse(text, source, folder, overrides)?;
+    Ok(Opened { settings, notes: Vec::new(), bounds: None })
 }

@@ -15,6 +15,7 @@
 //! - `assemble`: settings to the scene that is rendered; [`sequence`]: the file of each frame.
 //! - `guess`, `conventions`, `grid_names`, `role`: settings for a bare volume; `fit_camera`: its
 //!   camera.
+//! - `setup`: the surroundings of a volume that stands alone.
 //! - `grid_address`: names of grids in scenes; `file_box`: boxes in the space of a file.
 //! - `additions`: new lights and floors; `describe`: the contents of a volume file for people.
 //! - `resume`, `fingerprints`: whether a snapshot can be continued, and whether its files changed.
@@ -46,6 +47,7 @@ mod save;
 mod schema;
 pub mod sequence;
 pub mod settings;
+mod setup;
 mod stamp;
 
 pub use additions::{floor_under, new_light};
@@ -64,4 +66,5 @@ pub use resume::{Blocker, Compatibility, compatibility, settings_of};
 pub use role::Role;
 pub use save::{save, to_toml};
 pub use settings::Settings;
+pub use setup::Setup;
 pub use stamp::Stamp;

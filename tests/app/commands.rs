@@ -100,6 +100,7 @@ fn meant_for(command: Command) -> MeantFor {
         | Command::NextFrame
         | Command::SaveFlipbook
         | Command::CameraKey
+        | Command::NextSetup
         | Command::FrameVolume
         | Command::FocusByClick
         | Command::ZoomToPixels

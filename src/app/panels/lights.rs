@@ -3,7 +3,7 @@
 
 use egui::{Button, RichText, Ui, vec2};
 
-use super::{Panel, environment, folded_section};
+use super::{Panel, environment, folded_section, setup};
 use crate::app::ui::theme::color;
 use crate::app::ui::widgets::{
     Number, Vector, color_rows, key_help, row_label, scaled, segments, significant, strength,
@@ -23,7 +23,8 @@ const KINDS: [(LightKind, &str, &str); 5] = [
 /// Shows the section.
 pub fn show(ui: &mut Ui, panel: &mut Panel<'_>) {
     folded_section(ui, "Lights", |ui| {
-        let mut edit = environment::rows(ui, panel);
+        let edit = setup::show(ui, panel);
+        let mut edit = edit.or(environment::rows(ui, panel));
         let camera = panel.editor.document.settings.present_camera();
         let opened = panel.editor.opened().settings.light.clone();
         let lights = &mut panel.editor.document.settings.light;

@@ -4,6 +4,7 @@
 //! - `strategy`, `advanced`: toggles and presets, and what is behind them.
 //! - `volume`, `grids`, `emission`, `ramp`, `placement`, `sequence`: a volume, its grids,
 //!   emission, place and frames.
+//! - `setup`: the surroundings of a volume that stands alone.
 //! - `lights`, `environment`, `surfaces`, `camera`, `film`, `display`: the rest of the scene and of
 //!   the view.
 
@@ -19,6 +20,7 @@ pub mod lights;
 pub mod placement;
 pub mod ramp;
 pub mod sequence;
+pub mod setup;
 pub mod strategy;
 pub mod surfaces;
 pub mod volume;

@@ -1,10 +1,10 @@
-//! The camera's commands: framing, keys, focus.
+//! Commands of camera and surroundings.
 
 use glam::{UVec2, Vec2};
 
 use super::app::App;
-use crate::scene;
 use crate::scene::settings::CameraKey;
+use crate::scene::{self, Setup};
 use crate::transport::profile::depth_seen;
 
 impl App {
@@ -17,6 +17,15 @@ impl App {
         let fitted = scene::fit_camera(&settings.present_camera(), &bounds, size.x / size.y);
         settings.set_present_camera(fitted);
         self.editor.name_edit("frame the volumes");
+    }
+
+    /// Puts the volumes in the next surroundings.
+    pub(super) fn next_setup(&mut self) {
+        let bounds = self.subject_bounds();
+        let settings = &mut self.editor.document.settings;
+        let next = Setup::of(settings).map_or(Setup::default(), Setup::next);
+        next.apply(settings, &bounds);
+        self.editor.name_edit("surroundings");
     }
 
     /// Sets a key of the camera in the present frame, or removes the one that is there.

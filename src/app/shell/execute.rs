@@ -30,6 +30,7 @@ impl App {
             Command::SaveFlipbook => self.ask_to_save_flipbook(ctx),
             Command::NextFrame => self.step_frame(1),
             Command::CameraKey => self.set_or_remove_camera_key(),
+            Command::NextSetup => self.next_setup(),
             Command::FrameVolume => self.frame_volume(),
             Command::FocusByClick => self.pick_focus(),
             Command::FitPicture => self.viewport.zoom = Default::default(),

@@ -14,7 +14,7 @@ const RENDER: [&[Command]; 2] = [
     &[Command::Play, Command::PreviousFrame, Command::NextFrame, Command::SaveFlipbook],
 ];
 const VIEW: [&[Command]; 6] = [
-    &[Command::CameraKey, Command::FocusByClick],
+    &[Command::CameraKey, Command::FocusByClick, Command::NextSetup],
     &[Command::FrameVolume, Command::FitPicture, Command::ZoomToPixels, Command::GoToPicture],
     &[Command::AutoExposure, Command::ExposureUp, Command::ExposureDown],
     &[Command::NextToneCurve, Command::FalseColor],

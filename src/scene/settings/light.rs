@@ -21,6 +21,10 @@ const HALF_V: [f32; 3] = [0.0, 0.5, 0.0];
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct LightSettings {
+    /// A name to tell lights apart; no effect on the picture.
+    #[schemars(extend("default" = ""))]
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub name: String,
     /// The type of light. The window calls `sphere` sphere light and `quad` area light.
     #[serde(rename = "type")]
     pub kind: LightKind,
@@ -92,6 +96,7 @@ pub enum LightKind {
 impl Default for LightSettings {
     fn default() -> Self {
         Self {
+            name: String::new(),
             kind: LightKind::default(),
             intensity: Color::Gray(1.0),
             visible: true,

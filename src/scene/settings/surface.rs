@@ -19,6 +19,10 @@ const ALPHA: f32 = 0.2;
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct SurfaceSettings {
+    /// A name to tell surfaces apart; no effect on the picture.
+    #[schemars(extend("default" = ""))]
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub name: String,
     /// The shape of the surface.
     pub shape: SurfaceShape,
     /// A point of the plane; the center of the square if `half_size` is given.
