@@ -61,7 +61,7 @@ fn every_shipped_scene_is_built() {
         assert_eq!(built.world.instances().len(), settings.volume.len());
         count += 1;
     }
-    assert!(count >= 7);
+    assert!(count >= 14);
     let embedded = scene::load(scene::DEFAULT_SCENE).unwrap();
     let file = scene::load(&format!("{}/scenes/torch.toml", env!("CARGO_MANIFEST_DIR"))).unwrap();
     assert_eq!(embedded, file);

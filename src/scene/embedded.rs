@@ -15,6 +15,13 @@ const SCENES: &[(&str, &str)] = &[
     ("fog", include_str!("../../scenes/fog.toml")),
     ("cloud", include_str!("../../scenes/cloud.toml")),
     ("plume", include_str!("../../scenes/plume.toml")),
+    ("phoenix", include_str!("../../scenes/phoenix.toml")),
+    ("tunnel", include_str!("../../scenes/tunnel.toml")),
+    ("mist", include_str!("../../scenes/mist.toml")),
+    ("hearth", include_str!("../../scenes/hearth.toml")),
+    ("blast", include_str!("../../scenes/blast.toml")),
+    ("godrays", include_str!("../../scenes/godrays.toml")),
+    ("lamps", include_str!("../../scenes/lamps.toml")),
     ("street", include_str!("../../scenes/street.toml")),
 ];
 

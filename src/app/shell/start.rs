@@ -19,12 +19,14 @@ const LINE: f32 = 16.0;
 const FILES: f32 = 176.0;
 /// Files of before that there is room for.
 const MOST_FILES: usize = 3;
+/// Height of a window from which on the cards lie in two rows, in points.
+const TALL: f32 = 680.0;
 
 /// An embedded scene: its name, what it shows, and its small picture.
 type Card = (&'static str, &'static str, &'static [u8]);
 
 /// The embedded scenes, the simplest ones first.
-const CARDS: [Card; 7] = [
+const CARDS: [Card; 14] = [
     (
         "torch",
         "A torch burning behind smoke",
@@ -46,6 +48,41 @@ const CARDS: [Card; 7] = [
         "plume",
         "A column of smoke in the sun",
         include_bytes!("../../../assets/thumbnails/plume.png"),
+    ),
+    (
+        "phoenix",
+        "A bird made of fire, wrapped in smoke",
+        include_bytes!("../../../assets/thumbnails/phoenix.png"),
+    ),
+    (
+        "tunnel",
+        "Torches on the pillars of a misty tunnel",
+        include_bytes!("../../../assets/thumbnails/tunnel.png"),
+    ),
+    (
+        "mist",
+        "A campfire in thin mist, among trees",
+        include_bytes!("../../../assets/thumbnails/mist.png"),
+    ),
+    (
+        "hearth",
+        "A fire among balls from polished to dull",
+        include_bytes!("../../../assets/thumbnails/hearth.png"),
+    ),
+    (
+        "blast",
+        "An explosion behind thick smoke, between houses",
+        include_bytes!("../../../assets/thumbnails/blast.png"),
+    ),
+    (
+        "godrays",
+        "Beams of sunlight in a dark, hazy room",
+        include_bytes!("../../../assets/thumbnails/godrays.png"),
+    ),
+    (
+        "lamps",
+        "Strong lamps in thin and thick clouds",
+        include_bytes!("../../../assets/thumbnails/lamps.png"),
     ),
     (
         "street",
@@ -85,30 +122,44 @@ impl StartRow {
         ui.add_space(space::TIGHT);
         ui.horizontal_top(|ui| {
             let width = (ui.available_width() - FILES - 2.0 * space::ROW).max(PICTURE.x);
-            ui.allocate_ui(vec2(width, PICTURE.y + LINE + space::ROW), |ui| {
-                self.cards(ui, &mut choice);
-            });
+            let rows = if ui.ctx().content_rect().height() < TALL { 1 } else { 2 };
+            let height = rows as f32 * (PICTURE.y + LINE + space::ROW);
+            ui.allocate_ui(vec2(width, height), |ui| self.cards(ui, rows, &mut choice));
             ui.vertical(|ui| files(ui, recent, &mut choice));
         });
         choice
     }
 
-    fn cards(&mut self, ui: &mut Ui, choice: &mut Option<StartChoice>) {
+    /// The cards in rows of equal length. The wheel moves them where they are wider than the window.
+    fn cards(&mut self, ui: &mut Ui, rows: usize, choice: &mut Option<StartChoice>) {
         if self.pictures.is_empty() {
             self.pictures = CARDS.iter().map(|card| picture(ui.ctx(), card)).collect();
         }
+        let cards: Vec<_> = CARDS.iter().zip(&self.pictures).collect();
+        ui.style_mut().always_scroll_the_only_direction = true;
         ScrollArea::horizontal().auto_shrink([true, false]).show(ui, |ui| {
-            ui.horizontal_top(|ui| {
-                ui.spacing_mut().item_spacing.x = 4.0;
-                // Room for the outline.
-                ui.add_space(2.0);
-                for (&(name, words, _), picture) in CARDS.iter().zip(&self.pictures) {
-                    if card(ui, name, picture.as_ref()).on_hover_text(words).clicked() {
-                        *choice = Some(StartChoice::Open(format!("builtin:{name}")));
-                    }
+            ui.spacing_mut().item_spacing = vec2(4.0, space::ROW);
+            ui.vertical(|ui| {
+                for row in cards.chunks(CARDS.len().div_ceil(rows)) {
+                    ui.horizontal_top(|ui| card_row(ui, row, choice));
                 }
             });
         });
+    }
+}
+
+/// A row of scenes with their small pictures.
+fn card_row(
+    ui: &mut Ui,
+    row: &[(&Card, &Option<TextureHandle>)],
+    choice: &mut Option<StartChoice>,
+) {
+    // Room for the outline.
+    ui.add_space(2.0);
+    for ((name, words, _), picture) in row {
+        if card(ui, name, picture.as_ref()).on_hover_text(*words).clicked() {
+            *choice = Some(StartChoice::Open(format!("builtin:{name}")));
+        }
     }
 }
 
