@@ -4,8 +4,8 @@ use std::path::Path;
 
 use flambeau::error::NO_PROGRESS;
 use flambeau::scene::settings::{
-    Albedo, CameraKey, CameraSettings, Color, EmissionMode, Extent, GridKey, LightKind,
-    LightSettings, MaterialKind, MaterialSettings, Normalize, RampKind, SkySettings,
+    Albedo, CameraKey, CameraSettings, Color, EmissionMode, EmissionSettings, Extent, GridKey,
+    LightKind, LightSettings, MaterialKind, MaterialSettings, Normalize, RampKind, SkySettings,
     SurfaceSettings, SurfaceShape, VelocitySettings, VelocityUnit, VolumeSettings, VolumeShape,
     WorldUp,
 };
@@ -690,20 +690,7 @@ fn any_volume(rng: &mut impl Rng, home: &Path) -> VolumeSettings {
     volume.phase.g = rng.random_range(-0.999..=0.999);
     volume.phase.g2 = maybe(rng, |_| 0.25).unwrap_or_default();
     volume.phase.mix = maybe(rng, |rng| rng.random()).unwrap_or_default();
-    volume.emission.intensity_grid = maybe(rng, |_| "flame".into());
-    volume.emission.curve = maybe(rng, |_| vec![[0.0, -0.5]]).unwrap_or_default();
-    volume.emission.mode = [
-        EmissionMode::None,
-        EmissionMode::Grid,
-        EmissionMode::Constant,
-        EmissionMode::Source,
-        EmissionMode::Blackbody,
-        EmissionMode::Ramp,
-    ][rng.random_range(0..6)];
-    volume.emission.grid = maybe(rng, |_| "heat".into());
-    volume.emission.color = maybe(rng, color);
-    volume.emission.kelvin_offset = maybe(rng, |rng| rng.random());
-    volume.emission.normalize = maybe(rng, |_| Normalize::T4);
+    volume.emission = any_emission(rng);
     if volume.file.is_some() {
         volume.velocity = VelocitySettings {
             grid: None,
@@ -712,8 +699,23 @@ fn any_volume(rng: &mut impl Rng, home: &Path) -> VolumeSettings {
             scale: rng.random(),
         };
     }
-    volume.emission.stops = maybe(rng, |rng| vec![[0.0; 4], [1.5, rng.random(), 0.25, 1e-8]]);
     volume
+}
+
+fn any_emission(rng: &mut impl Rng) -> EmissionSettings {
+    let modes = [EmissionMode::None, EmissionMode::Grid, EmissionMode::Constant];
+    let others = [EmissionMode::Source, EmissionMode::Blackbody, EmissionMode::Ramp];
+    EmissionSettings {
+        mode: [modes, others].concat()[rng.random_range(0..6)],
+        grid: maybe(rng, |_| "heat".into()),
+        curve: maybe(rng, |_| vec![[0.0, -0.5]]).unwrap_or_default(),
+        intensity_grid: maybe(rng, |_| "flame".into()),
+        color: maybe(rng, color),
+        kelvin_offset: maybe(rng, |rng| rng.random()),
+        normalize: maybe(rng, |_| Normalize::T4),
+        stops: maybe(rng, |rng| vec![[0.0; 4], [1.5, rng.random(), 0.25, 1e-8]]),
+        ..EmissionSettings::default()
+    }
 }
 
 fn any_light(rng: &mut impl Rng) -> LightSettings {

@@ -15,7 +15,7 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use flambeau::error::{Error, NO_PROGRESS};
 use flambeau::scene::settings::{Color, EmissionMode, Settings, VolumeSettings, VolumeShape};
-use flambeau::scene::{self, Overrides, VolumeCache};
+use flambeau::scene::{self, Overrides, Setup, VolumeCache};
 use glam::Vec3A;
 
 fn asset(name: &str) -> String {
@@ -70,7 +70,8 @@ fn every_shipped_scene_is_built() {
 }
 
 #[test]
-fn fires_glow_and_smoke_is_lit() {
+fn fires_glow_in_a_dim_studio_and_smoke_is_lit() {
+    let horizon = |settings: &Settings| settings.environment.gradient.unwrap()[1].rgb().x;
     for name in ["torch_hd", "campfire_hd", "explosion_hd"] {
         let opened = opened(&asset(name));
         let volume = &opened.settings.volume[0];
@@ -79,14 +80,15 @@ fn fires_glow_and_smoke_is_lit() {
         assert_eq!(volume.emission.mode, EmissionMode::Blackbody);
         assert_eq!(volume.emission_grid(), Some("temperature"));
         assert_eq!(volume.emission.kelvin_scale(), 1000.0, "Blender's temperature of 0 to 3");
-        assert!(opened.settings.light.is_empty(), "the fire is the light");
+        assert_eq!(Setup::of(&opened.settings), Some(Setup::Studio));
+        assert!(horizon(&opened.settings) < 0.06, "the fire is the light");
         assert!(opened.notes.iter().any(|note| note.text.contains("\"temperature\"")));
     }
     for name in ["plume", "cloud", "fog"] {
         let settings = opened(&asset(name)).settings;
         assert_eq!(settings.volume[0].emission.mode, EmissionMode::None);
-        assert_eq!(settings.light.len(), 1);
-        assert!(!settings.environment.radiance.is_black());
+        assert_eq!(Setup::of(&settings), Some(Setup::Studio));
+        assert!(horizon(&settings) > 0.15);
     }
 }
 

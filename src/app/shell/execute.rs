@@ -11,6 +11,7 @@ use crate::transport::toggle::Toggle;
 
 impl App {
     /// Carries out one command.
+    #[allow(clippy::too_many_lines, reason = "a table with one row for each command")]
     pub(super) fn execute(&mut self, ctx: &Context, command: Command) {
         match command {
             Command::Open => self.ask(ctx, Purpose::Open),

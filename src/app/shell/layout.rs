@@ -108,26 +108,7 @@ impl App {
         if let Some(wait) = self.viewport.resize(area, self.largest) {
             ui.ctx().request_repaint_after(wait);
         }
-        if !self.chrome.full_screen {
-            self.start_row(ui);
-            self.strip_row(ui);
-            self.time_row(ui, commands);
-        }
-        self.path_bar_row(ui);
-        drop_row(ui);
-        self.dropped_row(ui);
-        self.progress_row(ui);
-        self.unsaved_row(ui);
-        self.changed_scene_row(ui);
-        self.sweep_row(ui);
-        if !self.chrome.full_screen {
-            self.measure_rows(ui);
-        }
-        if !self.notices.list().is_empty() {
-            egui::Panel::bottom("notices")
-                .frame(theme::panel_frame())
-                .show(ui, |ui| self.notices.show(ui));
-        }
+        self.rows(ui, commands);
         let shown = self.shown(ui.ctx());
         let is_live = self.snapshots.picture().is_none() || self.compare.versus.is_some();
         let is_plain = self.compare.map().is_none();
@@ -150,14 +131,8 @@ impl App {
                 if is_live {
                     marks::show(ui, rect, &mut self.compare, &self.editor.document);
                 }
-                let clicked = first.and_then(|view| view.clicked);
-                if let Some(pixel) = clicked.filter(|_| self.viewport.picks_focus) {
-                    self.focus_on(pixel);
-                } else if clicked.is_some()
-                    && !self.diagnostics.wanted.ray
-                    && !self.compare.region.remove()
-                {
-                    self.gizmo.selected = None;
+                if let Some(pixel) = first.and_then(|view| view.clicked) {
+                    self.clicked(pixel);
                 }
                 if let Some(view) =
                     first.filter(|_| is_live && is_plain && !self.chrome.full_screen)
@@ -168,6 +143,39 @@ impl App {
                 rect
             })
             .inner
+    }
+
+    /// The rows that come and go below the picture.
+    fn rows(&mut self, ui: &mut Ui, commands: &mut Vec<Command>) {
+        if !self.chrome.full_screen {
+            self.start_row(ui);
+            self.strip_row(ui);
+            self.time_row(ui, commands);
+        }
+        self.path_bar_row(ui);
+        drop_row(ui);
+        self.dropped_row(ui);
+        self.progress_row(ui);
+        self.unsaved_row(ui);
+        self.changed_scene_row(ui);
+        self.sweep_row(ui);
+        if !self.chrome.full_screen {
+            self.measure_rows(ui);
+        }
+        if !self.notices.list().is_empty() {
+            egui::Panel::bottom("notices")
+                .frame(theme::panel_frame())
+                .show(ui, |ui| self.notices.show(ui));
+        }
+    }
+
+    /// Takes a click on a pixel of the picture.
+    fn clicked(&mut self, pixel: UVec2) {
+        if self.viewport.picks_focus {
+            self.focus_on(pixel);
+        } else if !self.diagnostics.wanted.ray && !self.compare.region.remove() {
+            self.gizmo.selected = None;
+        }
     }
 
     /// The pictures that the picture area shows.

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use super::flipbook::{Flipbook, FramePictures, Take};
 use super::playback::{Pace, Playback, Tick};
 use crate::scene::Settings;
-use crate::scene::sequence::time_range;
+use crate::scene::sequence;
 use crate::scene::settings::VolumeSettings;
 
 /// Samples of a pixel from which on a frame belongs to the flipbook, at first.
@@ -21,10 +21,18 @@ pub struct TimeLine {
     pub loops: bool,
     range: Option<[i32; 2]>,
     /// The settings that the range was found for.
-    ranged: Option<(Vec<VolumeSettings>, [Option<[i32; 2]>; 2])>,
+    ranged: Option<RangeSource>,
     playback: Option<Playback>,
     /// The frame of the flipbook that is shown while it plays.
     playhead: Option<i32>,
+}
+
+/// What the range of frames follows from.
+#[derive(Debug, PartialEq)]
+struct RangeSource {
+    volumes: Vec<VolumeSettings>,
+    time_range: Option<[i32; 2]>,
+    camera_keys: Option<[i32; 2]>,
 }
 
 /// A request of the playback.
@@ -63,13 +71,15 @@ impl TimeLine {
 
     /// Brings the frames in line with the settings, and drops pictures of another take.
     pub fn update(&mut self, settings: &Settings, take: &Take) {
-        let keys = settings.camera.key_range();
-        let is_known = self.ranged.as_ref().is_some_and(|(volumes, ranges)| {
-            *volumes == settings.volume && *ranges == [settings.time.range, keys]
+        let (time_range, camera_keys) = (settings.time.range, settings.camera.key_range());
+        let is_known = self.ranged.as_ref().is_some_and(|known| {
+            known.volumes == settings.volume
+                && (known.time_range, known.camera_keys) == (time_range, camera_keys)
         });
         if !is_known {
-            self.range = time_range(settings);
-            self.ranged = Some((settings.volume.clone(), [settings.time.range, keys]));
+            self.range = sequence::time_range(settings);
+            let volumes = settings.volume.clone();
+            self.ranged = Some(RangeSource { volumes, time_range, camera_keys });
         }
         self.flipbook.keep_only(take);
         if self.range().is_none() {
