@@ -96,8 +96,11 @@ fn an_empty_frame_is_an_empty_picture() {
     let place = place();
     let empty = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/fixtures/vdb/empty_grid.vdb");
     std::fs::copy(empty, place.path("set/fire_0005.vdb")).unwrap();
-    let arguments =
-        [&["render", "set/fire_####.vdb", "--frame", "5", "-o", "empty.npy"], &SMALL[..]].concat();
+    let arguments = [
+        &["render", "set/fire_####.vdb", "--frame", "5", "--setup", "black", "-o", "empty.npy"],
+        &SMALL[..],
+    ]
+    .concat();
     let (code, _, stderr) = place.run(&arguments);
     assert_eq!(code, 0, "{stderr}");
     assert!(stderr.contains("fire_0005.vdb: the volume is empty"), "{stderr}");

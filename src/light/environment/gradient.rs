@@ -47,7 +47,7 @@ impl Gradient {
         PI * (self.bottom + 2.0 * self.horizon + self.top)
     }
 
-    /// Density over solid angle of [`Gradient::sample`].
+    /// Density over solid angle of a drawn direction.
     pub fn pdf_solid_angle(&self, sine: f32) -> f32 {
         let [bottom, horizon, top] = self.luminances;
         let end = if sine >= 0.0 { top } else { bottom };

@@ -80,7 +80,7 @@ impl RadianceMap {
         self.radiance_at(x, y)
     }
 
-    /// Density over solid angle of [`RadianceMap::sample`].
+    /// Density over solid angle of a drawn direction.
     pub fn pdf_solid_angle(&self, direction: Vec3A) -> f32 {
         let [x, y] = self.place(direction);
         let column = (x.max(0.0) as usize).min(self.size.x as usize - 1);
