@@ -77,6 +77,8 @@ fn toggles_act_on_the_edited_side() {
     window.press(Modifiers::NONE, Key::B);
     window.press(Modifiers::NONE, Key::Num4);
     assert!(strategy(&window, Side::A).nee && !strategy(&window, Side::B).nee);
+    // Both sides have begun anew, and their figures move the buttons when they are back.
+    window.until_compared();
     window.click(Role::Button, "Swap");
     assert!(!strategy(&window, Side::A).nee && strategy(&window, Side::B).nee);
     window.click(Role::Button, "Copy to other side");
