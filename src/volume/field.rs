@@ -240,7 +240,9 @@ mod tests {
         let grid = SparseGrid::from_dense(IVec3::splat(-3), size, &values, 0.0).unwrap();
         let place = Affine3A::from_rotation_z(0.4);
         let field = ScalarField::Grid(GridField::new(Arc::new(grid), place, None));
-        let curves = [&[[0.0, 3.0], [0.5, 1.0], [1.0, 2.0]][..], &[[0.2, 0.0], [0.200_01, 5.0]]];
+        let valley = &[[0.0, 3.0], [0.5, 1.0], [1.0, 2.0]][..];
+        let peak = &[[0.0, 0.5], [0.5, 5.0], [1.0, 0.0]];
+        let curves = [valley, peak, &[[0.2, 0.0], [0.200_01, 5.0]]];
         for points in curves {
             let curved = field.clone().through(Curve::new(points));
             let (mut outside, mut inside) = (0, 0);
