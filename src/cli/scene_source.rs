@@ -26,7 +26,7 @@ pub struct SceneArguments {
     /// Change a key of the scene, such as volume.0.density.scale=0.35 (see `flambeau keys`).
     #[arg(long, value_name = "KEY=VALUE", value_parser = file_name())]
     set: Vec<String>,
-    /// What stands around a volume that is opened alone: studio, night or black.
+    /// Surroundings of a volume that is opened alone: studio, night or black.
     #[arg(long, value_name = "NAME")]
     setup: Option<Setup>,
     /// Another seed gives the same picture with other noise.

@@ -36,7 +36,7 @@ pub struct Environment {
 /// Radiance by direction.
 #[derive(Clone, Debug)]
 pub enum Radiance {
-    /// The same from all directions.
+    /// One radiance from all directions.
     Even(Rgb),
     /// Radiance that changes with the elevation only.
     Gradient(Gradient),
@@ -67,7 +67,7 @@ impl Environment {
         environment
     }
 
-    /// The same radiance from all directions.
+    /// Light of one radiance from all directions.
     pub fn even(radiance: Rgb) -> Self {
         Self::new(Radiance::Even(radiance), Rgb::ONE, Orientation::default(), false)
     }

@@ -17,7 +17,7 @@ pub struct RadianceMaps {
     last: Mutex<Option<(Source, KeptMap)>>,
 }
 
-/// What a map was made of.
+/// The source that a map was made from.
 #[derive(Clone, Debug, PartialEq)]
 enum Source {
     /// The file of a name in a state.

@@ -16,7 +16,7 @@ pub struct Grid {
     /// Inactive tiles of 8 voxels a side by their first voxels, in the lower nodes of the voxels.
     pub tiles: Vec<(IVec3, f32)>,
     pub background: f32,
-    /// What the components of a vector have for each unit of a voxel's value.
+    /// Components of a vector for each unit of a voxel's value.
     pub components: [f32; 3],
     pub voxel_size: f64,
     pub translation: DVec3,

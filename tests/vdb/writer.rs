@@ -27,7 +27,7 @@ pub enum Scalar {
     Double,
 }
 
-/// What stands outside everything else.
+/// Value outside of all tiles and voxels.
 pub const BACKGROUND: f64 = 0.25;
 /// The active tile at (4096, 0, 0), 4096 voxels a side.
 pub const ROOT_TILE: f64 = 2.0;

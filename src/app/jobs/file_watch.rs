@@ -33,7 +33,7 @@ struct Shared {
 #[derive(Default)]
 struct State {
     watched: Vec<Watched>,
-    /// Those that have changed since somebody asked.
+    /// Files and folders that have changed since they were last asked for.
     changed: Vec<PathBuf>,
     ends: bool,
 }
@@ -42,9 +42,9 @@ struct State {
 #[derive(Debug)]
 struct Watched {
     path: PathBuf,
-    /// As it was when it was read.
+    /// Its state when it was read.
     known: Stamp,
-    /// As it was at the last look.
+    /// Its state at the last look.
     last: Stamp,
 }
 

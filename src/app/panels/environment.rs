@@ -10,7 +10,7 @@ use crate::app::ui::widgets::{
 };
 use crate::scene::settings::{Color, EnvironmentSettings, SkySettings};
 
-/// What the light of an environment comes from.
+/// A source of the environment's light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Source {
     Uniform,

@@ -20,14 +20,14 @@ pub struct TimeLine {
     /// Whether the first frame follows the last.
     pub loops: bool,
     range: Option<[i32; 2]>,
-    /// The settings that the range was found for.
+    /// Settings of the present range, once it is known.
     ranged: Option<RangeSource>,
     playback: Option<Playback>,
     /// The frame of the flipbook that is shown while it plays.
     playhead: Option<i32>,
 }
 
-/// What the range of frames follows from.
+/// Settings that the range of frames was found for.
 #[derive(Debug, PartialEq)]
 struct RangeSource {
     volumes: Vec<VolumeSettings>,

@@ -55,7 +55,7 @@ fn directions_follow_the_density() {
     }
 }
 
-/// What is drawn has the radiance and the density of its direction, and the mean of the radiance
+/// A light sample has the radiance and the density of its direction, and the mean of the radiance
 /// over the density is the light of all directions.
 #[test]
 fn samples_have_the_radiance_of_their_direction() {

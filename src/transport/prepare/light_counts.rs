@@ -41,8 +41,9 @@ const FEWEST: f32 = 0.25;
 const LEAST_LEFT: f64 = 0.1;
 /// Factor by which a change of a count must lower variance times cost.
 const GAIN: f64 = 0.95;
-/// The same at first vertices: samples that are spread evenly there have much less variance than
-/// the independent ones of the pilot, so that rounding adds more.
+/// Factor by which a change of a count at first vertices must lower it: samples that are spread
+/// evenly there have much less variance than the independent ones of the pilot, so that rounding
+/// adds more.
 const GAIN_OF_FIRST: f64 = 0.8;
 /// Largest factor of a contribution by other counts: none of them would find it.
 const LARGEST: f64 = 1e6;

@@ -112,7 +112,7 @@ impl Kind {
     }
 }
 
-/// What stands outside everything else, unless a grid says otherwise.
+/// Value outside of all tiles and voxels, unless a grid says otherwise.
 pub const BACKGROUND: f64 = 0.25;
 /// The active tile at (4096, 0, 0), 4096 voxels a side.
 pub const ROOT_TILE: f64 = 2.0;
